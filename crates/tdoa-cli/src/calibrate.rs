@@ -65,9 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let heights_differ = |nodes: &Nodes| nodes.dimensions() == 3;
     let given = match (arguments.dimensions, &anchors, &frame) {
         (Dimensions::Plane, _, Some(frame)) if frame.is_spatial() => {
-            return Err(Failure::Unusable(
-                "--frame has four names, but --dimensions 2 is the plane; give three".into(),
-            ));
+            return Err(Frame::too_many_names());
         }
         (Dimensions::Plane, ..) => Some((2, "as --dimensions says")),
         (Dimensions::Space, ..) => Some((3, "as --dimensions says")),

@@ -1,7 +1,7 @@
 //! The frame of a result: the one that three nodes fix, in space three or four, or that of the truth.
 
-use tdoa::align::{align, frame};
-use tdoa::{Calibration, Pseudoranges};
+use tdoa::align::{Transform, align, frame};
+use tdoa::{Calibration, Network, Pseudoranges};
 
 use crate::Failure;
 
@@ -50,12 +50,35 @@ impl Frame {
         self.axes.len() == 3
     }
 
+    /// What to say where four nodes are given for a network in the plane.
+    pub(crate) fn too_many_names() -> Failure {
+        Failure::Unusable("--frame has four names, but --dimensions 2 is the plane; give three".into())
+    }
+
     /// Moves a calibration into the frame; with three nodes in space, z is positive on the side of most other nodes.
     pub(crate) fn apply<const D: usize>(&self, calibration: &mut Calibration<D>) -> Result<(), Failure> {
+        let map = self.map([&calibration.receivers, &calibration.transmitters])?;
+        calibration.transform(&map);
+        Ok(())
+    }
+
+    /// Moves a network of which all is known into the frame, in the same way.
+    pub(crate) fn apply_network<const D: usize>(&self, network: &mut Network<D>) -> Result<(), Failure> {
+        let [receivers, transmitters] = [&network.receivers, &network.transmitters]
+            .map(|positions| positions.iter().copied().map(Some).collect::<Vec<_>>());
+        *network = self.map([&receivers, &transmitters])?.apply_network(network);
+        Ok(())
+    }
+
+    /// The map into the frame of receivers and transmitters at these places.
+    fn map<const D: usize>(
+        &self,
+        [receivers, transmitters]: [&[Option<[f64; D]>]; 2],
+    ) -> Result<Transform<D>, Failure> {
         let position = |node: &Node| {
             let position = match *node {
-                Node::Receiver(i) => calibration.receivers[i],
-                Node::Transmitter(j) => calibration.transmitters[j],
+                Node::Receiver(i) => receivers[i],
+                Node::Transmitter(j) => transmitters[j],
             };
             let missing = || Failure::Undetermined("--frame: a node of the frame could not be located".to_string());
             position.ok_or_else(missing)
@@ -66,14 +89,12 @@ impl Frame {
             *axis = position(node)?;
         }
         if D > self.axes.len() {
-            axes[D - 1] = side(calibration, origin, axes);
+            axes[D - 1] = side(receivers.iter().chain(transmitters).flatten(), origin, axes);
         }
-        let map = frame(origin, axes).ok_or_else(|| {
+        frame(origin, axes).ok_or_else(|| {
             let count = if self.is_spatial() { "four nodes lie in one plane" } else { "three nodes lie in one line" };
             Failure::Undetermined(format!("--frame: the {count} or in one place; choose others"))
-        })?;
-        calibration.transform(&map);
-        Ok(())
+        })
     }
 }
 
@@ -92,14 +113,17 @@ pub(crate) fn of_truth<const D: usize>(calibration: &mut Calibration<D>, receive
     }
 }
 
-/// A point above the plane of an origin and the first two points in space, on the side of the located nodes' centroid.
-fn side<const D: usize>(calibration: &Calibration<D>, origin: [f64; D], axes: [[f64; D]; D]) -> [f64; D] {
+/// A point above the plane of an origin and the first two points in space, on the side of these nodes' centroid.
+fn side<'a, const D: usize>(
+    nodes: impl Iterator<Item = &'a [f64; D]>,
+    origin: [f64; D],
+    axes: [[f64; D]; D],
+) -> [f64; D] {
     let away = |p: [f64; D], k: usize| p[k] - origin[k];
     let up: [f64; D] = std::array::from_fn(|k| {
         let (a, b) = ((k + 1) % D, (k + 2) % D);
         away(axes[0], a) * away(axes[1], b) - away(axes[0], b) * away(axes[1], a)
     });
-    let nodes = calibration.receivers.iter().chain(&calibration.transmitters).flatten();
     let above: f64 = nodes.map(|p| (0..D).map(|k| away(*p, k) * up[k]).sum::<f64>()).sum();
     std::array::from_fn(|k| origin[k] + up[k] * if above < 0.0 { -1.0 } else { 1.0 })
 }

@@ -1,16 +1,19 @@
 //! `tdoa solve`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use cli::files::Files;
 use cli::input::name;
 use serde::Serialize;
 use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
+use tdoa::node_table::network_table;
+use tdoa::picture::networks as picture;
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::summary::networks;
 use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 
+use crate::frame::Frame;
 use crate::units::Unit;
 use crate::{Failure, input, interrupt, output};
 
@@ -45,12 +48,30 @@ pub(crate) struct Arguments {
     /// Only sizes that are solved by paths have such roots.
     #[arg(long)]
     prove: bool,
+    /// Puts every network into one frame, in which they can be compared: ORIGIN at (0, 0), XAXIS on the positive x
+    /// axis and UP above it; in space ORIGIN,XAXIS,YSIDE,UP, with YSIDE in the plane of x and y, or the first three
+    /// of these, with z positive on the side of most nodes.
+    #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
+    frame: Option<String>,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
     /// Writes the result as JSON; - for standard output instead of the summary.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Writes a picture of every physical network, one below another.
+    #[arg(long)]
+    svg: Option<PathBuf>,
+    /// Writes the nodes of every physical network as a CSV table: rank of the network, kind, name, position, offset.
+    #[arg(long, value_name = "FILE.csv")]
+    nodes: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// The options that ask for files, with these.
+    fn outputs(&self) -> [(&'static str, Option<&Path>); 3] {
+        [("--json", self.json.as_deref()), ("--svg", self.svg.as_deref()), ("--nodes", self.nodes.as_deref())]
+    }
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -81,10 +102,15 @@ struct Report<'a, const D: usize> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    Files::new().reads(Some(&arguments.file)).writes("--json", arguments.json.as_deref()).check()?;
+    let files = Files::new().reads(Some(&arguments.file));
+    arguments.outputs().into_iter().fold(files, |files, (option, path)| files.writes(option, path)).check()?;
     let options = arguments.input.options(false)?;
     let unit = Unit::new(options.units.unwrap_or_default());
     let measured = input::measurements(&arguments.file, options)?;
+    let frame = arguments.frame.as_deref().map(|text| Frame::parse(text, &measured)).transpose()?;
+    if arguments.dimensions == 2 && frame.as_ref().is_some_and(Frame::is_spatial) {
+        return Err(Frame::too_many_names());
+    }
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }
@@ -110,8 +136,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok((solved, prove.then(|| solver.prove_watched(monitor)).flatten()))
     };
     match arguments.dimensions {
-        2 => answer(arguments, unit, &measured, solve_in_plane),
-        _ => answer(arguments, unit, &measured, solve_in_space),
+        2 => answer(arguments, unit, &measured, frame, solve_in_plane),
+        _ => answer(arguments, unit, &measured, frame, solve_in_space),
     }
 }
 
@@ -123,6 +149,7 @@ fn answer<const D: usize>(
     arguments: &Arguments,
     unit: Option<Unit>,
     measured: &Pseudoranges,
+    frame: Option<Frame>,
     solve: impl FnOnce(&Monitor) -> Result<Solved<D>, MinimalError> + Send,
 ) -> Result<(), Failure>
 where
@@ -136,8 +163,13 @@ where
     let started = Instant::now();
     let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&monitor))?;
     interrupt::check()?;
-    let (solution, proofs) =
+    let (mut solution, proofs) =
         solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", name(&arguments.file))))?;
+    if let Some(frame) = frame {
+        for candidate in &mut solution.candidates {
+            frame.apply_network(&mut candidate.network)?;
+        }
+    }
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let report = Report {
@@ -152,10 +184,18 @@ where
         };
         output::json(path, &report)?;
     }
+    let names = [measured.receiver_names(), measured.transmitter_names()];
+    if let Some(path) = &arguments.svg {
+        output::text(path, &picture(&solution, names))?;
+    }
+    if let Some(path) = &arguments.nodes {
+        output::text(path, &network_table(&solution, names))?;
+    }
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }
-    output::summary(arguments.json.as_deref(), || summary(&solution, proofs, measured, unit, seconds))?;
+    let outputs = arguments.outputs().into_iter().filter_map(|(_, path)| path);
+    output::summary(outputs, || summary(&solution, proofs, measured, unit, seconds))?;
     if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
             "{}: the data do not determine the network, or the result is not whole; see the warnings",

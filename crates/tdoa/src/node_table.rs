@@ -1,6 +1,7 @@
-//! A calibration as a CSV table of its nodes.
+//! A calibration, or the networks of an exact solution, as a CSV table of the nodes.
 
 use crate::calibrate::Calibration;
+use crate::minimal::MinimalSolution;
 
 /// The table `kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers`, with
 /// receivers first, in metres, empty where nothing could be determined. In space it has `z`, `std_z`,
@@ -39,6 +40,32 @@ pub fn node_table<const D: usize>(calibration: &Calibration<D>) -> String {
     table.finish()
 }
 
+/// The table `network,kind,name,x,y,offset` of every physical network of an exact solution, in metres, with
+/// receivers, which have no offset, first; in space it has `z` too. The column `network` has the rank, from 1. The names
+/// are those of the receivers and of the transmitters.
+pub fn network_table<const D: usize>(solution: &MinimalSolution<D>, names: [&[String]; 2]) -> String {
+    const { assert!(D == 2 || D == 3, "a network is in the plane or in space") }
+    let mut table = Table(csv::Writer::from_writer(Vec::new()));
+    let heading = ["network", "kind", "name"].into_iter().chain(["x", "y", "z"].into_iter().take(D)).chain(["offset"]);
+    table.row(heading.map(str::to_string).collect());
+    for (k, candidate) in solution.candidates.iter().enumerate().filter(|(_, candidate)| candidate.physical) {
+        let mut row = |kind: &str, name: &str, position: &[f64; D], offset: Option<f64>| {
+            let mut row = vec![(k + 1).to_string(), kind.to_string(), name.to_string()];
+            row.extend(position.iter().map(f64::to_string));
+            row.push(text(offset));
+            table.row(row);
+        };
+        let network = &candidate.network;
+        for (name, position) in names[0].iter().zip(&network.receivers) {
+            row("receiver", name, position, None);
+        }
+        for ((name, position), offset) in names[1].iter().zip(&network.transmitters).zip(&network.offsets) {
+            row("transmitter", name, position, Some(*offset));
+        }
+    }
+    table.finish()
+}
+
 struct Table(csv::Writer<Vec<u8>>);
 
 impl Table {
@@ -61,6 +88,8 @@ fn text(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::align::Transform;
+    use crate::minimal::{Candidate, PathCounts, RootCounts};
     use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
 
     #[test]
@@ -75,5 +104,37 @@ mod tests {
         assert_eq!(table.lines().count(), 1 + 8 + 12);
         let nodes = crate::read::read_nodes_from(table.as_bytes(), "nodes.csv").unwrap();
         assert_eq!(nodes.in_order(&calibration.receiver_names).unwrap(), calibration.receivers);
+    }
+    #[test]
+    fn a_table_has_every_physical_network() {
+        let simulation =
+            simulate(&SimulateOptions::<3> { receivers: 8, transmitters: 5, ..SimulateOptions::new() }).unwrap();
+        let measured = simulation.pseudoranges;
+        let candidate = |rank: usize, physical: bool| Candidate {
+            network: Transform { scale: rank as f64, ..Transform::IDENTITY }.apply_network(&simulation.network),
+            residual: 0.0,
+            physical,
+            condition: 1.0,
+        };
+        let solution = MinimalSolution {
+            configuration: "8r/5s".to_string(),
+            solver: "8r/5s",
+            paths: PathCounts::default(),
+            counts: RootCounts::default(),
+            stopped_early: false,
+            warnings: Vec::new(),
+            candidates: vec![candidate(1, true), candidate(2, false), candidate(3, true)],
+        };
+        let table = network_table(&solution, [measured.receiver_names(), measured.transmitter_names()]);
+        let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(rows[0], ["network", "kind", "name", "x", "y", "z", "offset"]);
+        assert_eq!(rows.len(), 1 + 2 * (8 + 5));
+        // The last transmitter of the third network, whose lengths are three times as large.
+        let numbers: Vec<f64> = rows[26][3..].iter().map(|cell| cell.parse().unwrap()).collect();
+        let (network, number) = (&simulation.network, 3.0);
+        let expected = network.transmitters[4].iter().chain([&network.offsets[4]]);
+        assert!(numbers.iter().zip(expected).all(|(x, y)| (x - number * y).abs() < 1e-9) && rows[26][0] == "3");
+        assert_eq!(&rows[1][..3], ["1", "receiver", "r1"]);
+        assert_eq!(rows[1][6], "");
     }
 }

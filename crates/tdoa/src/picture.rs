@@ -8,6 +8,8 @@ mod histogram;
 mod labels;
 mod layout;
 mod legend;
+mod networks;
+mod scene;
 mod view;
 
 use crate::calibrate::Calibration;
@@ -17,6 +19,8 @@ pub use canvas::Canvas;
 pub(crate) use canvas::escape;
 pub(crate) use layout::Layout;
 use legend::Legend;
+pub use networks::networks;
+pub(crate) use scene::Scene;
 use view::WIDTH;
 
 /// Least height of what is below the views.
@@ -24,7 +28,8 @@ const FOOT: f64 = 190.0;
 
 /// The picture as SVG text: one view of a network in the plane, three at one scale of one in space.
 pub fn picture<const D: usize>(calibration: &Calibration<D>) -> String {
-    let layout = Layout::of(calibration);
+    let scene = Scene::of(calibration);
+    let layout = Layout::of(&scene);
     let legend = Legend::of(calibration, &layout);
     // Between views in space there is a corner without one.
     let corner = layout.corner.filter(|room| legend.fits(room));
@@ -32,7 +37,7 @@ pub fn picture<const D: usize>(calibration: &Calibration<D>) -> String {
     let mut canvas = Canvas::new(WIDTH, layout.foot + below);
     canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
     for view in &layout.views {
-        view.draw(&mut canvas, calibration, |p| layout.shows(p), layout.radius(calibration));
+        view.draw(&mut canvas, &scene, |p| layout.shows(p), layout.radius(&scene));
     }
     let width = if corner.is_some() { WIDTH - 120.0 } else { 480.0 };
     histogram::draw(&mut canvas, calibration, [60.0, layout.foot], [width, 130.0]);
@@ -43,7 +48,7 @@ pub fn picture<const D: usize>(calibration: &Calibration<D>) -> String {
 /// By what factor ellipses are enlarged, so that they stand out from the dots: 1 if half of them do
 /// so already, otherwise a round number.
 pub fn ellipse_magnification<const D: usize>(calibration: &Calibration<D>) -> f64 {
-    Layout::of(calibration).magnified
+    Layout::of(&Scene::of(calibration)).magnified
 }
 
 fn title<const D: usize>(calibration: &Calibration<D>) -> String {

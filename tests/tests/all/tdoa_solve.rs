@@ -102,3 +102,36 @@ fn sizes_without_a_solution_name_those_with_one() {
         "{message}"
     );
 }
+
+#[test]
+fn every_physical_network_is_written_in_the_frame() {
+    let receivers = [[0.0, 0.0], [3.1, 0.4], [1.2, 2.7], [4.4, 3.3], [-0.8, 1.9], [2.5, -2.6]];
+    let directory = tempfile::tempdir().expect("directory");
+    let [file, svg, nodes] = ["pseudoranges.csv", "n.svg", "n.csv"].map(|name| directory.path().join(name));
+    std::fs::write(&file, matrix(&receivers, &TRANSMITTERS)).expect("written");
+    let command = |frame: &'static str| {
+        let files = ["--json", "-", "--svg", text(&svg), "--nodes", text(&nodes)];
+        run("tdoa", &[&["solve", text(&file), "--frame", frame], &files[..]].concat())
+    };
+    let output = command("r2,s1,r4");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let solutions = found["solutions"].as_array().expect("solutions");
+    for solution in solutions {
+        let at = |kind: &str, i: usize, k: usize| solution[kind][i][k].as_f64().expect("number");
+        let zero = [at("receivers", 1, 0), at("receivers", 1, 1), at("transmitters", 0, 1)];
+        assert!(zero.iter().all(|x| x.abs() < 1e-9), "{zero:?}");
+        assert!(at("transmitters", 0, 0) > 0.0 && at("receivers", 3, 1) > 0.0);
+    }
+    // Each physical network has six receivers and three transmitters, in the table and, with a legend, in the picture.
+    let physical = solutions.iter().filter(|solution| solution["physical"] == true).count();
+    let [picture, table] = [&svg, &nodes].map(|path| std::fs::read_to_string(path).expect("file"));
+    assert!(physical > 0 && table.starts_with("network,kind,name,x,y,offset\n"));
+    assert_eq!(table.lines().count(), 1 + 9 * physical);
+    assert_eq!(picture.matches("class=\"receiver\"").count(), 1 + 6 * physical);
+    for (frame, part) in [("r1,r2,r3,r4", "give three"), ("r1,r2,r9", "no node is named \"r9\"")] {
+        let output = command(frame);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(part), "{said}");
+    }
+}

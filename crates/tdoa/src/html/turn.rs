@@ -2,7 +2,7 @@
 //! it stays hidden; the picture is always there.
 
 use crate::calibrate::Calibration;
-use crate::picture::Layout;
+use crate::picture::{Layout, Scene};
 use crate::quantity::{coordinate, decimals, number};
 
 pub(super) const STYLE: &str = include_str!("turn.css");
@@ -10,8 +10,9 @@ const SCRIPT: &str = include_str!("turn.js");
 
 /// The view as HTML, with the nodes that the picture shows.
 pub(super) fn view<const D: usize>(calibration: &Calibration<D>) -> String {
-    let layout = Layout::of(calibration);
-    let data = data(calibration, &layout);
+    let scene = Scene::of(calibration);
+    let layout = Layout::of(&scene);
+    let data = data(calibration, &scene, &layout);
     let has_ellipsoids = data.contains("\"ellipsoid\":");
     let ellipsoids = match (has_ellipsoids, layout.magnified) {
         (false, _) => String::new(),
@@ -32,10 +33,10 @@ pub(super) fn view<const D: usize>(calibration: &Calibration<D>) -> String {
 /// The nodes as JSON: `{"receivers": [{"name": "a", "at": [1, 2, 3], "truth": [1, 2, 3], "held": true,
 /// "ellipsoid": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}], "transmitters": []}`. An ellipsoid of matrix A has the points x with
 /// x' A^-1 x = 1 about its node; it is as large as it is drawn.
-fn data<const D: usize>(calibration: &Calibration<D>, layout: &Layout) -> String {
+fn data<const D: usize>(calibration: &Calibration<D>, scene: &Scene<D>, layout: &Layout) -> String {
     let decimals = decimals(calibration.extent().unwrap_or(0.0));
     let point = |p: [f64; D]| format!("[{}]", p.map(|x| coordinate(x, decimals)).join(","));
-    let radius = layout.radius(calibration);
+    let radius = layout.radius(scene);
     let matrix = |covariance: &[[f64; D]; D]| {
         let rows = covariance.map(|row| format!("[{}]", row.map(|c| format!("{:.5e}", radius * radius * c)).join(",")));
         format!("[{}]", rows.join(","))
@@ -116,13 +117,14 @@ mod tests {
         if let Some(truth) = &mut calibration.truth {
             truth.positions[4] = None;
         }
-        let data: Value = serde_json::from_str(&data(&calibration, &Layout::of(&calibration))).unwrap();
+        let scene = Scene::of(&calibration);
+        let layout = Layout::of(&scene);
+        let data: Value = serde_json::from_str(&data(&calibration, &scene, &layout)).unwrap();
         let receivers = data["receivers"].as_array().unwrap();
         assert_eq!((receivers.len(), data["transmitters"].as_array().unwrap().len()), (7, 10));
         assert_eq!(receivers[0]["at"], serde_json::json!([1.0, -2.5, 0.25]));
         assert_eq!(receivers[1]["name"], "</script>");
         assert_eq!((&receivers[2]["held"], &receivers[1]["held"]), (&Value::Bool(true), &Value::Null));
-        let layout = Layout::of(&calibration);
         let square = (layout.magnified * calibration.ellipse_radius.unwrap()).powi(2);
         let sphere = |i: usize, k: usize| receivers[0]["ellipsoid"][i][k].as_f64().unwrap() / square;
         assert!((0..9).all(|k| (sphere(k / 3, k % 3) - f64::from(k % 4 == 0)).abs() < 1e-4), "{}", receivers[0]);

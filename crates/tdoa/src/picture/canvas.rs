@@ -40,6 +40,11 @@ impl Map {
         (0..2).all(|k| (at[k] - self.middle[k]).abs() <= self.half[k])
     }
 
+    /// Moves the box further down in the picture.
+    pub(super) fn down(&mut self, pixels: f64) {
+        self.middle[1] += pixels;
+    }
+
     /// The metres that the box shows to the right (0) or upwards (1).
     pub(super) fn range(&self, k: usize) -> (f64, f64) {
         let reach = self.half[k] / self.scale;

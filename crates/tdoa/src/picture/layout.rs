@@ -1,10 +1,10 @@
-//! Which views of a calibration the picture has, and where.
+//! Which views of a scene the picture has, and where.
 
 use std::array::from_fn;
 
 use super::canvas::{Map, Rectangle};
+use super::scene::Scene;
 use super::view::{View, WIDTH, magnification};
-use crate::calibrate::Calibration;
 use crate::points::{centroid, distance, spread};
 
 /// Transmitters farther than this many network sizes from the centre are left out of the picture.
@@ -49,18 +49,18 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// The views of a calibration in the plane or in space.
-    pub(crate) fn of<const D: usize>(calibration: &Calibration<D>) -> Self {
+    /// The views of a scene in the plane or in space.
+    pub(crate) fn of<const D: usize>(scene: &Scene<D>) -> Self {
         const { assert!(D == 2 || D == 3, "a picture is of the plane or of space") }
-        let points = points(calibration);
+        let points = points(scene);
         let ranges = from_fn(|k| range(points.iter().map(|p| p[k])));
         let mut layout = Layout::arranged(&ranges);
-        let magnified = layout.magnification(calibration);
+        let magnified = layout.magnification(scene);
         layout.magnified = magnified;
-        layout = Layout { magnified, ..Layout::arranged(&layout.with_ellipses(ranges, calibration)) };
-        layout.outside = calibration.transmitters.iter().flatten().filter(|p| !layout.shows(p)).count();
-        for (p, covariance) in layout.ellipsoids(calibration) {
-            let fits = |view: &View| view.ellipse_fits(p, covariance, layout.radius(calibration));
+        layout = Layout { magnified, ..Layout::arranged(&layout.with_ellipses(ranges, scene)) };
+        layout.outside = scene.transmitters.positions.iter().flatten().filter(|p| !layout.shows(p)).count();
+        for (p, covariance) in layout.ellipsoids(scene) {
+            let fits = |view: &View| view.ellipse_fits(p, covariance, layout.radius(scene));
             if layout.views.iter().any(|view| fits(view).is_none()) {
                 layout.undrawn += 1;
             } else if layout.views.iter().any(|view| fits(view) == Some(false)) {
@@ -79,40 +79,48 @@ impl Layout {
         Layout { views, magnified: 1.0, outside: 0, cut: 0, undrawn: 0, corner, foot }
     }
 
+    /// The same further down in the picture.
+    pub(super) fn down(mut self, pixels: f64) -> Self {
+        self.views.iter_mut().for_each(|view| view.map.down(pixels));
+        self.corner = self.corner.map(|r| Rectangle { top: r.top + pixels, bottom: r.bottom + pixels, ..r });
+        self.foot += pixels;
+        self
+    }
+
     /// Whether all views have this point.
     pub(crate) fn shows<const D: usize>(&self, p: &[f64; D]) -> bool {
         self.views.iter().all(|view| view.map.shows(view.point(*p)))
     }
 
     /// The radius of ellipses as they are drawn, in standard deviations.
-    pub(crate) fn radius<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
-        self.magnified * calibration.ellipse_radius.unwrap_or(0.0)
+    pub(crate) fn radius<const D: usize>(&self, scene: &Scene<D>) -> f64 {
+        self.magnified * scene.radius
     }
 
     /// The nodes that all views have and whose covariance is known.
-    fn ellipsoids<'a, const D: usize>(&self, calibration: &'a Calibration<D>) -> Vec<([f64; D], &'a [[f64; D]; D])> {
-        let [of_receivers, of_transmitters] = calibration.trusted_covariances();
-        let receivers = calibration.receivers.iter().zip(of_receivers);
-        let nodes = receivers.chain(calibration.transmitters.iter().zip(of_transmitters));
+    fn ellipsoids<'a, const D: usize>(&self, scene: &'a Scene<D>) -> Vec<([f64; D], &'a [[f64; D]; D])> {
+        let all = [&scene.receivers, &scene.transmitters].into_iter();
+        let nodes = all.flat_map(|nodes| nodes.positions.iter().zip(&nodes.covariances));
         let known = nodes.filter_map(|(position, covariance)| Some(((*position)?, covariance.as_ref()?)));
         known.filter(|(p, _)| self.shows(p)).collect()
     }
 
-    fn magnification<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
-        let radius = calibration.ellipse_radius.unwrap_or(0.0);
-        let ellipsoids = self.ellipsoids(calibration);
-        magnification(self.views.iter().flat_map(|view| ellipsoids.iter().map(|(_, c)| view.semiaxes(c, radius)[0])))
+    fn magnification<const D: usize>(&self, scene: &Scene<D>) -> f64 {
+        let ellipsoids = self.ellipsoids(scene);
+        magnification(
+            self.views.iter().flat_map(|view| ellipsoids.iter().map(|(_, c)| view.semiaxes(c, scene.radius)[0])),
+        )
     }
 
     /// The ranges of the points, grown for ellipses. One that is larger than the network would leave a dot of the
     /// network: it is cut instead.
-    fn with_ellipses<const D: usize>(&self, ranges: [(f64, f64); D], calibration: &Calibration<D>) -> [(f64, f64); D] {
+    fn with_ellipses<const D: usize>(&self, ranges: [(f64, f64); D], scene: &Scene<D>) -> [(f64, f64); D] {
         let largest = ranges.iter().map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
         // Ellipses need no room for names. What grows has a smaller scale, at which the margin is worth more.
         let margin = self.views.iter().map(|view| LEAST_MARGIN / view.map.scale).fold(0.0, f64::max);
         let mut grown = ranges;
-        for (p, covariance) in self.ellipsoids(calibration) {
-            let reach: [f64; D] = from_fn(|k| self.radius(calibration) * covariance[k][k].sqrt());
+        for (p, covariance) in self.ellipsoids(scene) {
+            let reach: [f64; D] = from_fn(|k| self.radius(scene) * covariance[k][k].sqrt());
             if reach.iter().all(|reach| *reach <= largest) {
                 for (k, (low, high)) in grown.iter_mut().enumerate() {
                     let beyond = (reach[k] - margin).max(0.0);
@@ -125,15 +133,13 @@ impl Layout {
 }
 
 /// All points that the views must have.
-fn points<const D: usize>(calibration: &Calibration<D>) -> Vec<[f64; D]> {
-    let receivers: Vec<[f64; D]> = calibration.receivers.iter().flatten().copied().collect();
+fn points<const D: usize>(scene: &Scene<D>) -> Vec<[f64; D]> {
+    let receivers: Vec<[f64; D]> = scene.receivers.positions.iter().flatten().copied().collect();
     let (centre, size) = (centroid(receivers.iter()), spread(receivers.iter()));
     let near = |p: &&[f64; D]| distance(**p, centre) <= REACH * size;
-    let transmitters = calibration.transmitters.iter().flatten().filter(near);
-    let images = calibration.mirror_images.iter().map(|image| &image.position).filter(near);
-    let truth = calibration.truth.iter().flat_map(|truth| {
-        truth.positions.iter().flatten().chain(truth.transmitter_positions.iter().flatten().filter(near))
-    });
+    let transmitters = scene.transmitters.positions.iter().flatten().filter(near);
+    let images = scene.mirror_images.iter().map(|(_, image)| image).filter(near);
+    let truth = scene.receivers.truth.iter().flatten().chain(scene.transmitters.truth.iter().flatten().filter(near));
     receivers.iter().chain(transmitters).chain(images).chain(truth).copied().collect()
 }
 

@@ -91,6 +91,11 @@ impl Legend {
         Legend(rows)
     }
 
+    /// The rows for networks that are exact.
+    pub(super) fn exact() -> Self {
+        Legend(vec![(Mark::Receiver, "receiver".to_string()), (Mark::Transmitter, "transmitter".to_string())])
+    }
+
     /// Height in pixels.
     pub(super) fn height(&self) -> f64 {
         ROW * self.0.len() as f64

@@ -1,9 +1,9 @@
-//! One view of a calibration: the network along a pair of axes, with ellipses, names, outliers and, if
+//! One view of a scene: the network along a pair of axes, with ellipses, names, outliers and, if
 //! the truth is given, the truth and error vectors.
 
 use super::canvas::{Canvas, Map, Rectangle, nice};
 use super::labels::Labels;
-use crate::calibrate::Calibration;
+use super::scene::{Nodes, Scene};
 use crate::minimal::NodeKind;
 use crate::quantity::coordinate;
 
@@ -84,27 +84,22 @@ impl View {
     pub(super) fn draw<const D: usize>(
         &self,
         canvas: &mut Canvas,
-        calibration: &Calibration<D>,
+        scene: &Scene<D>,
         shows: impl Fn(&[f64; D]) -> bool,
         radius: f64,
     ) {
         self.grid(canvas);
         canvas.within(&self.map.frame());
-        self.outliers(canvas, calibration, &shows);
-        self.nodes(canvas, calibration, &shows, radius);
-        self.truth(canvas, calibration, &shows);
+        self.outliers(canvas, scene, &shows);
+        self.nodes(canvas, scene, &shows, radius);
+        self.truth(canvas, scene, &shows);
         canvas.whole();
-        self.names(canvas, calibration, &shows);
+        self.names(canvas, scene, &shows);
     }
 
-    fn outliers<const D: usize>(
-        &self,
-        canvas: &mut Canvas,
-        calibration: &Calibration<D>,
-        shows: impl Fn(&[f64; D]) -> bool,
-    ) {
-        let ends = calibration.residuals.outliers().filter_map(|(i, j, _)| {
-            let (receiver, transmitter) = (calibration.receivers[i]?, calibration.transmitters[j]?);
+    fn outliers<const D: usize>(&self, canvas: &mut Canvas, scene: &Scene<D>, shows: impl Fn(&[f64; D]) -> bool) {
+        let ends = scene.outliers.iter().filter_map(|&(i, j)| {
+            let (receiver, transmitter) = (scene.receivers.positions[i]?, scene.transmitters.positions[j]?);
             shows(&transmitter).then_some((receiver, transmitter))
         });
         for (receiver, transmitter) in ends.take(OUTLIERS) {
@@ -115,23 +110,22 @@ impl View {
     fn nodes<const D: usize>(
         &self,
         canvas: &mut Canvas,
-        calibration: &Calibration<D>,
+        scene: &Scene<D>,
         shows: impl Fn(&[f64; D]) -> bool,
         radius: f64,
     ) {
-        for image in calibration.mirror_images.iter().filter(|image| shows(&image.position)) {
-            let colour = if image.kind == NodeKind::Receivers { BLUE } else { ORANGE };
-            canvas.ring(self.to(image.position), RING, colour);
+        for (kind, image) in scene.mirror_images.iter().filter(|(_, image)| shows(image)) {
+            let colour = if *kind == NodeKind::Receivers { BLUE } else { ORANGE };
+            canvas.ring(self.to(*image), RING, colour);
         }
-        let [of_receivers, of_transmitters] = calibration.trusted_covariances();
-        let nodes = calibration.transmitters.iter().zip(of_transmitters);
+        let nodes = scene.transmitters.positions.iter().zip(&scene.transmitters.covariances);
         for (position, covariance) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, ORANGE);
                 canvas.circle(self.to(p), DISC, ORANGE);
             }
         }
-        let nodes = calibration.receivers.iter().zip(of_receivers).zip(&calibration.anchored);
+        let nodes = scene.receivers.positions.iter().zip(&scene.receivers.covariances).zip(&scene.anchored);
         for ((position, covariance), anchored) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, BLUE);
@@ -161,15 +155,9 @@ impl View {
         }
     }
 
-    fn truth<const D: usize>(
-        &self,
-        canvas: &mut Canvas,
-        calibration: &Calibration<D>,
-        shows: impl Fn(&[f64; D]) -> bool,
-    ) {
-        let Some(truth) = &calibration.truth else { return };
-        let receivers = calibration.receivers.iter().zip(&truth.positions);
-        let transmitters = calibration.transmitters.iter().zip(&truth.transmitter_positions);
+    fn truth<const D: usize>(&self, canvas: &mut Canvas, scene: &Scene<D>, shows: impl Fn(&[f64; D]) -> bool) {
+        let receivers = scene.receivers.positions.iter().zip(&scene.receivers.truth);
+        let transmitters = scene.transmitters.positions.iter().zip(&scene.transmitters.truth);
         for (found, known) in receivers.chain(transmitters.filter(|(p, _)| p.as_ref().is_some_and(&shows))) {
             if let (Some(found), Some(known)) = (found, known) {
                 canvas.line(self.to(*found), self.to(*known), "#000", 1.5, "");
@@ -178,19 +166,14 @@ impl View {
         }
     }
 
-    fn names<const D: usize>(
-        &self,
-        canvas: &mut Canvas,
-        calibration: &Calibration<D>,
-        shows: impl Fn(&[f64; D]) -> bool,
-    ) {
-        let named = |names: &[String], positions: &[Option<[f64; D]>]| -> Vec<([f64; 2], String)> {
-            let nodes = names.iter().zip(positions).filter_map(|(name, p)| Some(((*p)?, name.clone())));
+    fn names<const D: usize>(&self, canvas: &mut Canvas, scene: &Scene<D>, shows: impl Fn(&[f64; D]) -> bool) {
+        let named = |nodes: &Nodes<D>| -> Vec<([f64; 2], String)> {
+            let nodes = nodes.names.iter().zip(&nodes.positions).filter_map(|(name, p)| Some(((*p)?, name.clone())));
             nodes.filter(|(p, _)| shows(p)).map(|(p, name)| (self.to(p), name)).collect()
         };
-        let receivers = named(&calibration.receiver_names, &calibration.receivers);
-        let transmitters = named(&calibration.transmitter_names, &calibration.transmitters);
-        let marks = self.marks(calibration, &shows);
+        let receivers = named(&scene.receivers);
+        let transmitters = named(&scene.transmitters);
+        let marks = self.marks(scene, &shows);
         let mut labels = Labels::new(&marks, self.map.frame());
         labels.place(canvas, &receivers[..receivers.len().min(NAMED)], BLUE);
         if transmitters.len() <= NAMED {
@@ -199,19 +182,17 @@ impl View {
     }
 
     /// What names must leave free: the boxes of all marks.
-    fn marks<const D: usize>(&self, calibration: &Calibration<D>, shows: impl Fn(&[f64; D]) -> bool) -> Vec<Rectangle> {
+    fn marks<const D: usize>(&self, scene: &Scene<D>, shows: impl Fn(&[f64; D]) -> bool) -> Vec<Rectangle> {
         let mut marks = Vec::new();
         let mut mark = |p: Option<[f64; D]>, half: f64| {
             marks.extend(p.filter(&shows).map(|p| Rectangle::about(self.to(p), half)));
         };
-        for (position, anchored) in calibration.receivers.iter().zip(&calibration.anchored) {
+        for (position, anchored) in scene.receivers.positions.iter().zip(&scene.anchored) {
             mark(*position, if *anchored { SQUARE } else { TRIANGLE });
         }
-        calibration.transmitters.iter().for_each(|p| mark(*p, DISC));
-        calibration.mirror_images.iter().for_each(|image| mark(Some(image.position), RING));
-        if let Some(truth) = &calibration.truth {
-            truth.positions.iter().chain(&truth.transmitter_positions).for_each(|p| mark(*p, CROSS));
-        }
+        scene.transmitters.positions.iter().for_each(|p| mark(*p, DISC));
+        scene.mirror_images.iter().for_each(|(_, image)| mark(Some(*image), RING));
+        scene.receivers.truth.iter().chain(&scene.transmitters.truth).for_each(|p| mark(*p, CROSS));
         marks
     }
 
