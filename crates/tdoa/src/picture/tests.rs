@@ -365,6 +365,8 @@ fn flat_and_slender_networks_fill_a_picture_that_holds_everything() {
                 [x, y - 9.0, x + 5.0 * letters as f64, y]
             })
             .collect();
+        // Three views, each with two numbers at least on its upward axis; the words of the legend.
+        assert!(ticks(&svg, "end").len() >= 6, "{x} {y} {z}");
         assert!(outlines.len() == 3 && words.len() >= 4);
         let boxes: Vec<[f64; 4]> = outlines.into_iter().chain(words).collect();
         for (k, one) in boxes.iter().enumerate() {

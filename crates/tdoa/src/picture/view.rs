@@ -196,7 +196,7 @@ impl View {
         marks
     }
 
-    /// A frame with a square grid, numbers in metres, and the label, if any, above it.
+    /// A frame with a grid, square unless the view is flat, numbers in metres, and the label, if any, above it.
     fn grid(&self, canvas: &mut Canvas) {
         let frame = self.map.frame();
         let [right, up] = self.axes.map(|k| ["x", "y", "z"].get(k).copied().unwrap_or_default());
@@ -206,6 +206,7 @@ impl View {
             canvas.line([x, frame.top], [x, frame.bottom], "#ddd", 0.7, "");
             canvas.text([x, frame.bottom + 16.0], "middle", 11.0, &tick(value, step));
         }
+        let step = self.upward_step(step);
         for value in ticks(self.map.range(1), step) {
             let [_, y] = self.map.to([0.0, value]);
             canvas.line([frame.left, y], [frame.right, y], "#ddd", 0.7, "");
@@ -219,7 +220,13 @@ impl View {
         }
     }
 
-    /// Metres between two lines of the grid: at least the width of their numbers.
+    /// Metres between two level lines: those between upright ones, or fewer, so that a flat view has three at least.
+    fn upward_step(&self, step: f64) -> f64 {
+        let (low, high) = self.map.range(1);
+        if (high - low) / step >= 3.0 { step } else { nice((high - low) / 3.0) }
+    }
+
+    /// Metres between two upright lines of the grid: at least the width of their numbers.
     fn step(&self) -> f64 {
         let (low, high) = self.map.range(0);
         let fits = |step: &f64| {
