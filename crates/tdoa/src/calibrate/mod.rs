@@ -16,6 +16,7 @@ pub use entry::{Calibrates, Dimension, calibrate, calibrate_with};
 pub use input::anchors::SpeedEstimate;
 pub use judge::dimension_test::{DimensionTest, PlaneDistances};
 pub use judge::dimensions::{Calibrated, CalibratedError, calibrate_either};
+pub use judge::far_transmitters::FarTransmitter;
 pub use judge::mirror_images::MirrorImage;
 pub use options::{
     CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, SearchOptions,

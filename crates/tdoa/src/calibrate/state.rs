@@ -5,7 +5,7 @@ use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::neighbours::Neighbour;
 use crate::calibrate::options::CalibrateOptions;
 use crate::calibrate::receivers::echo::Echo;
-use crate::calibrate::receivers::errors::Fault;
+use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
 use crate::calibrate::unfinished::Unfinished;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -88,5 +88,11 @@ impl<'a, const D: usize> State<'a, D> {
             warnings: Vec::new(),
             so_far: None,
         }
+    }
+
+    /// Whether a delay of every receiver is taken out.
+    pub(crate) fn has_delays_of_all(&self) -> bool {
+        self.taken.len() == self.measured.receivers()
+            && self.taken.iter().all(|fault| fault.kind == ReceiverErrorKind::Delay)
     }
 }

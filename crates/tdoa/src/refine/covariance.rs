@@ -19,6 +19,7 @@ use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points::trace;
 use hc::Monitor;
 use std::array::from_fn;
 
@@ -44,6 +45,13 @@ pub(crate) struct Covariance<const D: usize = 2> {
     /// Receivers that could move without a change of the measurements (to first order) beyond a
     /// rigid motion.
     pub(crate) loose: Vec<usize>,
+}
+
+impl<const D: usize> Covariance<D> {
+    /// Largest standard deviation of a receiver's place, metres.
+    pub(crate) fn loosest(&self) -> f64 {
+        if self.loose.is_empty() { self.receivers.iter().map(trace).fold(0.0, f64::max).sqrt() } else { f64::INFINITY }
+    }
 }
 
 /// The normal equations reduced to the receivers, inverted.

@@ -5,6 +5,9 @@ use std::f64::consts::TAU;
 /// Share of gross errors to begin with.
 const FIRST: f64 = 0.05;
 
+/// Most rounds of telling gross errors from good measurements.
+const SORTINGS: usize = 12;
+
 /// The deviation of good measurements is at least this share of the width: exact ones have none.
 const EXACT: f64 = 1e-6;
 
@@ -48,6 +51,29 @@ impl GrossErrors {
         let normal = count * ((1.0 - self.share).ln() - 0.5 * TAU.ln()) - left * deviation.ln();
         normal - 0.5 * squares / deviation.powi(2) + (self.all - count) * (self.share / self.width).ln()
     }
+}
+
+/// Logarithm of the density of residuals, each times its precision and with it, of which some are gross errors anywhere within
+/// `width` metres: the deviation of good ones is the given or the likeliest one, from the first on. So many `unknowns`
+/// were fitted.
+pub(crate) fn log_density(
+    residuals: &[(f64, f64)],
+    unknowns: usize,
+    first: f64,
+    known: Option<f64>,
+    width: f64,
+) -> f64 {
+    let mut errors = GrossErrors::new(residuals.len(), width);
+    let (mut deviation, mut density) = (first, f64::NEG_INFINITY);
+    for _ in 0..SORTINGS {
+        let good = residuals.iter().filter(|(e, precision)| e.abs() <= errors.limit(deviation, *precision));
+        let (count, squares) = good.fold((0usize, 0.0), |(count, squares), (e, _)| (count + 1, squares + e * e));
+        let left = count.saturating_sub(unknowns);
+        deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
+        errors.count(count);
+        density = errors.log_density(count, unknowns, squares, deviation);
+    }
+    density
 }
 
 #[cfg(test)]

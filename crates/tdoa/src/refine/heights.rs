@@ -17,7 +17,7 @@ use super::refiner::{NetworkRefiner, RefineOptions, SEARCH};
 use crate::loss::SEARCH_NU;
 use crate::network::Network;
 use crate::observations::{Node, Observation, Observations, Pin};
-use crate::points::{spread, trace};
+use crate::points::spread;
 use hc::Monitor;
 use std::f64::consts::TAU;
 
@@ -88,9 +88,7 @@ impl<const D: usize> Heights<D> {
             let Some(uncertainty) = covariance(&pinned, &now.network, now.deviation, monitor)? else { return Ok(None) };
             let z = D - 1;
             let of_receivers: f64 = uncertainty.receivers.iter().map(|c| c[z][z]).sum();
-            let is_loose = !uncertainty.loose.is_empty();
-            let largest = uncertainty.receivers.iter().map(trace).fold(0.0, f64::max).sqrt();
-            now.loosest = if is_loose { f64::INFINITY } else { largest };
+            now.loosest = uncertainty.loosest();
             let placed = |j: usize| uncertainty.transmitters[j].map_or(now.transmitters.powi(2), |c| c.rows[z][z]);
             let of_transmitters: f64 = (0..observations.transmitters).map(placed).sum();
             let told = [(m, of_receivers, now.receivers), (n, of_transmitters, now.transmitters)]

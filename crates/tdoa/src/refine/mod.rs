@@ -30,7 +30,7 @@ pub(crate) use covariance::{Covariance, covariance};
 pub(crate) use descent::residuals;
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
-pub(crate) use gross_errors::GrossErrors;
+pub(crate) use gross_errors::log_density;
 pub(crate) use heights::Heights;
 pub(crate) use predicted::predicted_variances;
 pub(crate) use projection::{Motion, Projection, dot, gram};

@@ -1,14 +1,9 @@
 //! How much of what does not fit in the plane errors of receivers explain there: that is no reason for heights.
 
+use crate::calibrate::receivers::errors::KINDS;
 use crate::calibrate::report::calibration::Calibration;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::GrossErrors;
-
-/// Kinds of errors that a receiver may have: delay, drift, jump, move.
-const KINDS: f64 = 4.0;
-
-/// Most rounds of telling gross errors from good measurements.
-const SORTINGS: usize = 12;
+use crate::refine::log_density;
 
 /// How much more likely the measurements are once the errors of receivers are taken out of a network (natural
 /// logarithm). An error pays for the choice of receiver and kind, and for its size as in Schwarz's criterion (1978).
@@ -34,20 +29,4 @@ pub(super) fn explained_by_errors<const D: usize>(
     let receivers = without.receivers.iter().flatten().count() as f64;
     let price = (KINDS * receivers).ln() + 0.5 * (count.max(1) as f64).ln();
     (straight - bent - price * without.receiver_errors.len() as f64).max(0.0)
-}
-
-/// Logarithm of the density of residuals, each with its precision, where the deviation of good ones is the likeliest
-/// if it is not known.
-fn log_density(residuals: &[(f64, f64)], unknowns: usize, first: f64, known: Option<f64>, width: f64) -> f64 {
-    let mut errors = GrossErrors::new(residuals.len(), width);
-    let (mut deviation, mut density) = (first, f64::NEG_INFINITY);
-    for _ in 0..SORTINGS {
-        let good = residuals.iter().filter(|(e, precision)| e.abs() <= errors.limit(deviation, *precision));
-        let (count, squares) = good.fold((0usize, 0.0), |(count, squares), (e, _)| (count + 1, squares + e * e));
-        let left = count.saturating_sub(unknowns);
-        deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
-        errors.count(count);
-        density = errors.log_density(count, unknowns, squares, deviation);
-    }
-    density
 }

@@ -3,6 +3,7 @@
 
 use crate::align::align;
 use crate::calibrate::input::selection::Input;
+use crate::calibrate::judge::far_transmitters::{Far, drawn_in, far_transmitters, within_reach};
 use crate::calibrate::judge::lines_and_planes::turning;
 use crate::calibrate::judge::mirror_images::{Mirrored, Sides, differs_in_sides};
 use crate::calibrate::judge::neighbours::{BEYOND, Neighbour, Reason, widen};
@@ -11,14 +12,14 @@ use crate::calibrate::judge::weak_nodes::{WeakNodes, doubtful_receivers};
 use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays};
 use crate::calibrate::search::deviation::{inlier_deviation, typical_deviation};
 use crate::calibrate::search::one_sided::Information;
-use crate::calibrate::search::same_network::{same_receivers, same_transmitters};
+use crate::calibrate::search::same_network::{same, same_receivers, same_transmitters};
 use crate::calibrate::state::State;
 use crate::minimal::NodeKind;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::trace;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::Covariance;
+use crate::refine::{Covariance, covariance};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 /// Starts that must end in the best network before it is called unique: one or two may have found
@@ -49,6 +50,8 @@ pub(crate) struct Judged<'s, const D: usize> {
     /// Receivers that have no place, since their inliers may agree by chance.
     pub(crate) doubtful: Vec<usize>,
     pub(crate) weak: WeakNodes,
+    /// Transmitters of which the direction alone is told.
+    pub(crate) far: Vec<Far<D>>,
     /// Kinds of nodes that lie in one line of space, about which the others may turn.
     pub(crate) turning: Vec<NodeKind>,
     pub(crate) mirrored: Vec<Mirrored<D>>,
@@ -57,11 +60,14 @@ pub(crate) struct Judged<'s, const D: usize> {
     pub(crate) anchors_agree: bool,
     /// Likely neighbours beyond what the ellipses hold.
     pub(crate) apart: Vec<&'s Neighbour<D>>,
-    /// Networks that explain the measurements about as well, best first, in the frame of the best one.
+    /// Networks that explain the measurements about as well, best first, in the frame of the best one; none that differs in
+    /// the distances of far transmitters alone.
     pub(crate) others: Vec<Other<D>>,
     pub(crate) receivers_agree: bool,
     transmitters_agree: bool,
-    /// Whether enough of the search ended in the best network.
+    /// Starts of the search that ended in the best network.
+    pub(crate) agreeing: usize,
+    /// Whether enough of the search did.
     pub(crate) settled: bool,
     sure: bool,
 }
@@ -75,9 +81,9 @@ pub(crate) struct Other<const D: usize> {
 }
 
 impl<const D: usize> Judged<'_, D> {
-    /// Whether no other network explains the measurements.
+    /// Whether no other network explains the measurements, nor other distances of far transmitters.
     pub(crate) fn is_unique(&self) -> bool {
-        self.others.is_empty() && self.mirrored.is_empty() && self.sure
+        self.others.is_empty() && self.mirrored.is_empty() && self.far.is_empty() && self.sure
     }
 
     /// Whether other networks have the receivers in the same places.
@@ -87,7 +93,8 @@ impl<const D: usize> Judged<'_, D> {
 
     /// Whether other networks have nearly all transmitters in the same places.
     pub(crate) fn are_transmitters_unique(&self) -> bool {
-        self.transmitters_agree && 10 * self.images(NodeKind::Transmitters) <= self.kept.transmitters && self.sure
+        let open = self.images(NodeKind::Transmitters) + self.far.len();
+        self.transmitters_agree && 10 * open <= self.kept.transmitters && self.sure
     }
 
     fn images(&self, kind: NodeKind) -> usize {
@@ -124,6 +131,7 @@ impl<const D: usize> State<'_, D> {
             // What the robust loss loses against least squares on normal noise is added.
             (_, None) => self.covariance(&kept, sigma / EFFICIENCY.sqrt())?,
         };
+        let far = self.far_transmitters(&kept, &uncertainty, sigma)?;
         let mut apart: Vec<&Neighbour<D>> = Vec::new();
         if let Some(radius) = ellipse_radius {
             let likely = self.neighbours.iter().filter(|n| n.loss <= options.alternative_margin);
@@ -157,19 +165,19 @@ impl<const D: usize> State<'_, D> {
         let placeless = |i: &usize| doubtful.contains(i) || uncertainty.loose.contains(i);
         mirrored.retain(|image| image.kind == NodeKind::Transmitters || !placeless(&image.index));
         let turning = turning(best, &uncertainty);
-        let weak = WeakNodes::new(best, &uncertainty);
+        let weak = WeakNodes::new(best, &uncertainty, &far);
         let determined = !(ellipse_radius.is_some() && weak.are_most_receivers())
             && turning.is_empty()
             && !transposed
             && 2 * doubtful.len() < best.receivers.len();
 
-        let others = self.others(&apart, &mirrored);
+        let (others, agreeing) = self.others(&apart, &mirrored, &far);
         let receivers_agree = apart.is_empty() && others.iter().all(|other| same_receivers(&other.network, best));
         let transmitters_agree = apart.is_empty() && others.iter().all(|other| same_transmitters(&other.network, best));
         let placed = uncertainty.receivers.iter().all(|c| trace(c).max(0.0).sqrt() <= best.size());
         let settled = match &self.weak {
             Some(weak) => weak.is_empty(),
-            None => self.ranked[0].starts >= options.search.agreeing.min(options.search.max_starts).min(SETTLED),
+            None => agreeing >= options.search.agreeing.min(options.search.max_starts).min(SETTLED),
         };
         let as_given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
         let as_likely = as_given && one_sided.as_ref().is_none_or(|information| information.fits(redundancy));
@@ -195,6 +203,7 @@ impl<const D: usize> State<'_, D> {
             transposed,
             doubtful,
             weak,
+            far,
             turning,
             mirrored,
             determined,
@@ -202,13 +211,31 @@ impl<const D: usize> State<'_, D> {
             others,
             receivers_agree,
             transmitters_agree,
+            agreeing,
             settled,
         })
     }
 
+    /// Far transmitters of the best network.
+    fn far_transmitters(
+        &self,
+        kept: &Observations<D>,
+        uncertainty: &Covariance<D>,
+        sigma: f64,
+    ) -> Result<Vec<Far<D>>, CalibrateError<D>> {
+        let best = &self.ranked[0].network;
+        // Where a distance is beyond all bounds, arithmetic has no covariance for it.
+        let Some(near) = within_reach(best).filter(|_| !uncertainty.receivers.is_empty()) else {
+            return Ok(far_transmitters(best, uncertainty));
+        };
+        let uncertainty = covariance(kept, &near, sigma / EFFICIENCY.sqrt(), self.monitor)?;
+        Ok(uncertainty.map_or_else(Vec::new, |uncertainty| far_transmitters(&near, &uncertainty)))
+    }
+
     /// Networks that explain the measurements about as well as the best one and differ in more than the sides
-    /// of single nodes, best first.
-    fn others(&self, apart: &[&Neighbour<D>], mirrored: &[Mirrored<D>]) -> Vec<Other<D>> {
+    /// of single nodes and the distances of far ones, best first; and how many starts ended in the best one, distances of
+    /// far ones aside.
+    fn others(&self, apart: &[&Neighbour<D>], mirrored: &[Mirrored<D>], far: &[Far<D>]) -> (Vec<Other<D>>, usize) {
         let best = &self.ranked[0].network;
         let cost = self.ranked[0].objective;
         let found = self.ranked[1..].iter().map(|other| (&other.network, other.objective - cost, Reason::Found));
@@ -216,6 +243,14 @@ impl<const D: usize> State<'_, D> {
             found.chain(apart.iter().map(|other| (&other.network, other.loss, other.reason))).collect();
         others.retain(|(_, loss, _)| *loss <= self.options.alternative_margin);
         others.retain(|&(other, _, reason)| reason != Reason::Found || !differs_in_sides(best, other, mirrored));
+        let mut agreeing = self.ranked[0].starts;
+        if !far.is_empty() {
+            let near = drawn_in(best, far);
+            let is_best = |other: &Network<D>| same(&near, &drawn_in(other, far));
+            others.retain(|&(other, _, reason)| reason != Reason::Found || !is_best(other));
+            let alike = self.ranked[1..].iter().filter(|other| is_best(&other.network));
+            agreeing += alike.map(|other| other.starts).sum::<usize>();
+        }
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let framed = |(other, loss, reason): (&Network<D>, f64, Reason<D>)| {
             let network = if self.is_held() {
@@ -225,7 +260,7 @@ impl<const D: usize> State<'_, D> {
             };
             Some(Other { network, loss, reason })
         };
-        others.into_iter().filter_map(framed).collect()
+        (others.into_iter().filter_map(framed).collect(), agreeing)
     }
 
     /// Whether known positions fix the frame.

@@ -7,7 +7,7 @@ use crate::flatness::{FLAT, Plane, breadth, flatness, slenderness};
 use crate::median::median;
 use crate::minimal::NodeKind;
 use crate::network::Network;
-use crate::points::{dot, trace};
+use crate::points::{centroid, distance, dot, minus, trace};
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::{length, number};
 use crate::refine::Covariance;
@@ -32,7 +32,7 @@ pub(crate) fn turning<const D: usize>(network: &Network<D>, uncertainty: &Covari
     if in_line(&network.receivers, &of_receivers) {
         turning.push(NodeKind::Receivers);
     }
-    if in_line(&network.transmitters, &of_transmitters) {
+    if in_line(&network.transmitters, &of_transmitters) && may_be_in_line(network, uncertainty) {
         turning.push(NodeKind::Transmitters);
     }
     turning
@@ -114,6 +114,28 @@ fn in_line<const D: usize>(points: &[[f64; D]], covariances: &[&[[f64; D]; D]], 
     width < (WIDE * median(squares.collect()).map_or(0.0, f64::sqrt)).max(ROUNDING * size)
 }
 
+/// Whether the directions in which transmitters are seen from the middle of the receivers lie in one plane, as those of
+/// nodes in one line do: far ones tell their directions well, and their distances hardly.
+fn may_be_in_line<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>) -> bool {
+    let middle = centroid(network.receivers.iter());
+    let seen = network.transmitters.iter().zip(&uncertainty.transmitters).filter_map(|(p, c)| {
+        let (off, distance) = (minus(*p, middle), distance(*p, middle));
+        Some((off.map(|x| x / distance), distance, c.as_ref()?.rows)).filter(|_| distance > 0.0)
+    });
+    let seen: Vec<([f64; D], f64, [[f64; D]; D])> = seen.collect();
+    // With its opposite each, their plane is one through the middle.
+    let both: Vec<[f64; D]> = seen.iter().flat_map(|(u, ..)| [*u, u.map(|x| -x)]).collect();
+    let Some(Plane { normal, .. }) = Plane::through(&both) else { return true };
+    let width = (seen.iter().map(|(u, ..)| dot(*u, normal).powi(2)).sum::<f64>() / seen.len() as f64).sqrt();
+    // A distance does not move a direction.
+    let error = |(u, d, c): &([f64; D], f64, [[f64; D]; D])| {
+        let across = minus(normal, u.map(|x| x * dot(*u, normal)));
+        dot(across, c.map(|row| dot(row, across))).max(0.0).sqrt() / d
+    };
+    let errors = seen.iter().map(error).collect();
+    width < (WIDE * median(errors).unwrap_or(0.0)).max(ROUNDING)
+}
+
 /// Standard deviations of all nodes across the plane of these points and along it, medians; `None` if they
 /// are not known, there is no plane, or they hardly differ.
 fn across<const D: usize>(points: &[[f64; D]], network: &Network<D>, uncertainty: &Covariance<D>) -> Option<[f64; 2]> {
@@ -133,7 +155,11 @@ fn across<const D: usize>(points: &[[f64; D]], network: &Network<D>, uncertainty
 
 #[cfg(test)]
 mod tests {
-    use super::in_line;
+    use super::{in_line, may_be_in_line};
+    use crate::bordered::Bordered;
+    use crate::network::Network;
+    use crate::points::dot;
+    use crate::refine::Covariance;
 
     #[test]
     fn a_line_is_one_as_far_as_its_errors_go() {
@@ -158,5 +184,28 @@ mod tests {
         let none = errors(0.0);
         assert!(in_line(&line, &[], 11.0) && in_line(&line, &[&none; 12], 11.0));
         assert!(!in_line(&points, &[&none; 12], 11.0));
+    }
+
+    #[test]
+    fn directions_tell_that_far_transmitters_are_in_no_line() {
+        let receivers = vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, -1.0, -0.5]];
+        let seen = |transmitters: Vec<[f64; 3]>| {
+            // Distances are uncertain by half, directions by a hundredth.
+            let along = |p: &[f64; 3]| {
+                let entry = |a: usize, b: usize| 0.25 * p[a] * p[b] + f64::from(u8::from(a == b)) * 1e-4 * dot(*p, *p);
+                let rows = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
+                Some(Bordered { rows, border: [0.0; 3], corner: 1.0 })
+            };
+            let uncertainty =
+                Covariance { transmitters: transmitters.iter().map(along).collect(), ..Covariance::default() };
+            let offsets = vec![0.0; transmitters.len()];
+            may_be_in_line(&Network { receivers: receivers.clone(), transmitters, offsets }, &uncertainty)
+        };
+        let around = |k: u32| {
+            let at = f64::from(k);
+            [20.0 * at.cos(), 20.0 * at.sin(), 8.0 * (3.0 * at).cos()]
+        };
+        assert!(!seen((0..20).map(around).collect()));
+        assert!(seen((0..20).map(|k| [3.0 * f64::from(k) - 30.0, 12.0, 7.0]).collect()));
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod dimension_test;
 pub(crate) mod dimensions;
 mod explained;
+pub(crate) mod far_transmitters;
 pub(crate) mod judgement;
 mod known_heights;
 pub(crate) mod late;

@@ -1,5 +1,6 @@
 //! Nodes that the measurements hardly tie down.
 
+use crate::calibrate::judge::far_transmitters::Far;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::trace;
@@ -58,7 +59,7 @@ pub(crate) fn agree_by_chance<const D: usize>(all: usize, inliers: usize, width:
     (2 * subsets) as f64 * tail
 }
 
-/// Nodes whose standard deviation is above a tenth of the network's size, or not known.
+/// Nodes whose standard deviation is above a tenth of the network's size, or not known; without far transmitters.
 pub(crate) struct WeakNodes {
     pub(crate) receivers: Vec<usize>,
     pub(crate) transmitters: Vec<usize>,
@@ -69,7 +70,7 @@ pub(crate) struct WeakNodes {
 }
 
 impl WeakNodes {
-    pub(crate) fn new<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>) -> WeakNodes {
+    pub(crate) fn new<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>, far: &[Far<D>]) -> WeakNodes {
         let limit = 0.1 * network.size();
         let all = network.receivers.len();
         let of_receiver = |i: &usize| uncertainty.receivers.get(*i).map_or(f64::INFINITY, deviation) > limit;
@@ -79,7 +80,8 @@ impl WeakNodes {
         };
         let receivers: Vec<usize> = (0..all).filter(of_receiver).collect();
         let open = (0..all).filter(|i| uncertainty.loose.contains(i) || receivers.contains(i)).count();
-        let transmitters = (0..network.transmitters.len()).filter(of_transmitter).collect();
+        let is_far = |j: &usize| far.iter().any(|far| far.transmitter == *j);
+        let transmitters = (0..network.transmitters.len()).filter(|j| of_transmitter(j) && !is_far(j)).collect();
         WeakNodes { receivers, transmitters, open, all }
     }
 

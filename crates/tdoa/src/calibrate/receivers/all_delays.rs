@@ -2,15 +2,16 @@
 
 use crate::calibrate::input::middle_delays::middle_delays;
 use crate::calibrate::options::{CalibrateError, check};
-use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
+use crate::calibrate::receivers::errors::{Fault, KINDS, ReceiverErrorKind};
 use crate::calibrate::receivers::take_out::{Estimated, STEPS, moved};
 use crate::calibrate::search::deviation::{inlier_deviation, spread_of_residuals};
 use crate::calibrate::search::finish::CAUCHY;
 use crate::calibrate::search::same_network::merged;
 use crate::calibrate::search::truncated_cost::{annealed, truncated_cost};
 use crate::calibrate::state::State;
+use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
+use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH, log_density};
 
 /// Networks whose delays are estimated to the end where all receivers have one.
 const CANDIDATES: usize = 10;
@@ -18,6 +19,9 @@ const CANDIDATES: usize = 10;
 /// Deviations, in those that the residuals have, at which such a network is fitted by least squares at first, and
 /// where measurements are still given up after that.
 const WIDEST: [f64; 2] = [10.0, 100.0];
+
+/// Measurements that must be left over for delays of all receivers that nobody asked for.
+const LEAST_REDUNDANCY: usize = 10;
 
 /// Steps of bringing a network and the delays of all receivers near their best fit.
 const COARSE: usize = 24;
@@ -27,11 +31,6 @@ impl<const D: usize> State<'_, D> {
     pub(crate) fn take_out_all(&mut self) -> Result<(), CalibrateError<D>> {
         let receivers = self.measured.receivers();
         let middle = middle_delays(&self.measured);
-        let delay = |receiver: usize, size: f64| {
-            let mut fault = Fault::new(receiver, ReceiverErrorKind::Delay, 0);
-            fault.size[0] = size;
-            fault
-        };
         // The mean of all delays cannot be told from the offsets.
         let unknown: Vec<Fault<D>> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
         // The search took the first receiver's too: what it says of offsets lacks that.
@@ -57,6 +56,14 @@ impl<const D: usize> State<'_, D> {
         let (sound, lost): (Vec<_>, Vec<_>) = all.into_iter().partition(|estimated| self.is_left_over(estimated));
         let mut all = if sound.is_empty() { lost } else { sound };
         self.rank_by_cost(&mut all);
+        self.take_delays(all);
+        Ok(())
+    }
+
+    /// Takes these delays of all receivers but the first out, each with the network that they were estimated with, the best
+    /// first.
+    fn take_delays(&mut self, all: Vec<Estimated<D>>) {
+        let receivers = self.measured.receivers();
         // They were apart only for as long as the delays were wrong.
         let all = merged(all, |(_, refined, _)| refined);
         let (mut taken, _, deviation) = all[0].clone();
@@ -65,7 +72,7 @@ impl<const D: usize> State<'_, D> {
         for fault in &mut taken {
             fault.size[0] -= mean;
         }
-        self.observations = Observations::new(&self.corrected(&taken), |_, _| true).with_other_unknowns(unknown.len());
+        self.observations = Observations::new(&self.corrected(&taken), |_, _| true).with_other_unknowns(receivers - 1);
         self.ranked = all.into_iter().map(|(_, refined, _)| refined).collect();
         for refined in &mut self.ranked {
             for offset in refined.network.offsets.iter_mut() {
@@ -73,6 +80,42 @@ impl<const D: usize> State<'_, D> {
             }
         }
         (self.taken, self.deviation) = (taken, deviation);
+    }
+
+    /// Takes a delay of every receiver out where that makes the measurements likelier than the errors of some that are
+    /// taken out so far. An error pays for the choice of receiver and kind, any error for its size as in Schwarz's
+    /// criterion (1978). `before` are the networks without anything taken out.
+    pub(crate) fn prefer_delays_of_all(&mut self, before: &[RefinedNetwork<D>]) -> Result<(), CalibrateError<D>> {
+        let receivers = self.measured.receivers();
+        let unknown: Vec<Fault<D>> = (1..receivers).map(|i| delay(i, 0.0)).collect();
+        let whole = self.observe(&unknown);
+        if receivers < 2 || whole.len() < whole.unknowns() + LEAST_REDUNDANCY {
+            return Ok(());
+        }
+        let (width, of_network) = (before[0].network.size(), whole.unknowns() - unknown.len());
+        let density = |observations: &Observations<D>, network: &Network<D>, deviation: f64| {
+            let residuals = observations.all().iter().map(|o| (o.residual(network), o.precision));
+            // What is left out of a receiver that was moved counts as wrong.
+            let out = (observations.len()..whole.len()).map(|_| (f64::INFINITY, 1.0));
+            log_density(&residuals.chain(out).collect::<Vec<_>>(), of_network, deviation, self.known, width)
+        };
+        let of_size = 0.5 * (whole.len() as f64).ln();
+        let of_one = (KINDS * receivers as f64).ln() + of_size;
+        let some =
+            density(&self.observations, &self.ranked[0].network, self.deviation) - of_one * self.taken.len() as f64;
+        let is_likelier = |(faults, refined, deviation): &Estimated<D>| {
+            density(&self.observe(faults), &refined.network, *deviation) - of_size * unknown.len() as f64 > some
+        };
+        let mut all = Vec::new();
+        for candidate in before.iter().take(CANDIDATES) {
+            all.push(self.estimate(candidate.clone(), self.deviation, unknown.clone())?);
+            if !is_likelier(&all[0]) {
+                return Ok(());
+            }
+        }
+        self.rank_by_cost(&mut all);
+        self.left.clear();
+        self.take_delays(all);
         Ok(())
     }
 
@@ -165,11 +208,19 @@ impl<const D: usize> State<'_, D> {
     }
 }
 
+/// A delay of a receiver, metres.
+fn delay<const D: usize>(receiver: usize, size: f64) -> Fault<D> {
+    let mut fault = Fault::new(receiver, ReceiverErrorKind::Delay, 0);
+    fault.size[0] = size;
+    fault
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Fault, ReceiverErrorKind, State};
+    use crate::align::align;
     use crate::refine::RefinedNetwork;
-    use crate::{CalibrateOptions, SimulateOptions, simulate};
+    use crate::{CalibrateOptions, Layout, ReceiverDelays, SimulateOptions, calibrate, simulate};
     use hc::Monitor;
 
     /// Whether exact measurements of seven receivers are more than the unknowns, with a delay of each receiver but
@@ -192,5 +243,30 @@ mod tests {
         // 7r/n in the plane: 7 n measurements for 17 + 3 n unknowns. In space: for 21 + 4 n.
         assert_eq!([4, 5].map(is_left_over::<2>), [false, true]);
         assert_eq!([5, 6, 7, 8].map(is_left_over::<3>), [false, false, false, true]);
+    }
+
+    #[test]
+    fn delays_of_all_are_told_from_errors_of_some() {
+        for seed in 0..4 {
+            let mut options = SimulateOptions::<3>::new();
+            (options.receivers, options.transmitters, options.noise, options.seed) = (10, 30, 0.01, seed);
+            options.layout = Layout::Room { extent: [10.0, 8.0, 3.0] };
+            let run = |delays: f64, receiver_delays: ReceiverDelays| {
+                let made = simulate(&SimulateOptions { delays, ..options.clone() }).unwrap();
+                let options = CalibrateOptions { receiver_delays, ..CalibrateOptions::<3>::new() };
+                let found = calibrate(&made.pseudoranges, &options).unwrap();
+                let receivers: Vec<[f64; 3]> = found.receivers.iter().flatten().copied().collect();
+                (found, align(&receivers, &made.network.receivers, false).unwrap().rms)
+            };
+            let (found, error) = run(0.05, ReceiverDelays::Auto);
+            let (_, known) = run(0.05, ReceiverDelays::All);
+            assert!(found.receiver_errors.len() == 10 && found.receiver_errors.iter().all(|e| e.taken_out), "{seed}");
+            assert!(
+                found.warnings.iter().any(|warning| warning.contains("all receivers seem to have delays")),
+                "{seed}"
+            );
+            assert!(error < 1.1 * known, "seed {seed}: {error} {known}");
+            assert!(run(0.0, ReceiverDelays::Auto).0.receiver_errors.is_empty(), "seed {seed}");
+        }
     }
 }

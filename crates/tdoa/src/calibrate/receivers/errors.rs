@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Kinds of errors that a receiver may have.
+pub(crate) const KINDS: f64 = 4.0;
+
 /// The kind of error that a receiver has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -2,11 +2,11 @@
 //! plane of the nodes.
 
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
-use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays};
+use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::state::State;
 use crate::flatness::levelled;
 use crate::network::Network;
-use crate::refine::{Heights, RefinedNetwork};
+use crate::refine::{Heights, RefinedNetwork, covariance};
 
 /// Share of the heights that the measurements tell, above which they need no expectation.
 const TOLD: f64 = 0.95;
@@ -35,8 +35,7 @@ impl<const D: usize> State<'_, D> {
     /// nearly all of them.
     pub(crate) fn level(&mut self) -> Result<(), CalibrateError<D>> {
         let State { options, known, .. } = *self;
-        let delays = options.receiver_delays == ReceiverDelays::All;
-        if D != 3 || self.anchors.is_some() || delays || options.errors == Errors::OneSided {
+        if D != 3 || self.anchors.is_some() || self.has_delays_of_all() || options.errors == Errors::OneSided {
             return Ok(());
         }
         let (modes, of_plane) = self.modes()?;
@@ -46,6 +45,12 @@ impl<const D: usize> State<'_, D> {
         self.dimension_test = DimensionTest { evidence, change: Some(in_deviations), ..DimensionTest::default() };
         let nodes = heights.network.receivers.len() + heights.network.transmitters.len();
         if heights.told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
+            return Ok(());
+        }
+        // An expectation that leaves places less certain than none has led to another network.
+        let sigma = known.unwrap_or(heights.deviation);
+        let alone = covariance(&self.observations, &self.ranked[0].network, sigma, self.monitor)?;
+        if alone.is_some_and(|alone| alone.loosest() < heights.loosest) {
             return Ok(());
         }
         for other in &mut self.ranked[1..] {

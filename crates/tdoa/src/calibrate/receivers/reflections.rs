@@ -7,7 +7,7 @@
 
 use crate::calibrate::judge::neighbours::Reason;
 use crate::calibrate::judge::weak_nodes::{BY_CHANCE, agree_by_chance};
-use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays, check};
+use crate::calibrate::options::{CalibrateError, Errors, check};
 use crate::calibrate::receivers::echo::{Echo, ReceiverEcho};
 use crate::calibrate::search::deviation::{spread_of_residuals, typical_deviation};
 use crate::calibrate::state::State;
@@ -31,7 +31,7 @@ enum Image {
 impl<const D: usize> State<'_, D> {
     /// Looks for a second place of each receiver, and leaves out what it measured at the one behind a wall.
     pub(crate) fn leave_out_reflections(&mut self) -> Result<(), CalibrateError<D>> {
-        if self.options.errors == Errors::OneSided || self.options.receiver_delays == ReceiverDelays::All {
+        if self.options.errors == Errors::OneSided || self.has_delays_of_all() {
             return Ok(());
         }
         for receiver in 0..self.observations.receivers {

@@ -1,10 +1,8 @@
-//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was
-//! moved.
+//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was moved.
 //!
-//! Such an error is a column beside the Jacobian: its contribution to the residuals of one
-//! receiver. The part of the column that no motion of the nodes produces is compared with the
-//! residuals (a score test). The column that explains most is added to the model, and the test goes
-//! on with what remains.
+//! Such an error is a column beside the Jacobian: its contribution to the residuals of one receiver. The part of the
+//! column that no motion of the nodes produces is compared with the residuals (a score test). The column that explains
+//! most is added to the model, and the test goes on with what remains.
 
 use std::array::from_fn;
 

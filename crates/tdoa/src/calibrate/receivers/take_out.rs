@@ -41,7 +41,11 @@ impl<const D: usize> State<'_, D> {
                 self.left = found;
                 self.doubt_of(doubted);
             }
-            ReceiverDelays::Auto => self.take_out_shown()?,
+            ReceiverDelays::Auto => {
+                let before = self.ranked.clone();
+                self.take_out_shown()?;
+                self.prefer_delays_of_all(&before)?;
+            }
             ReceiverDelays::All => self.take_out_all()?,
         }
         // They are near the network that has the errors.

@@ -4,6 +4,7 @@
 use crate::align::{Alignment, Transform, align, spanned};
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
+use crate::calibrate::judge::far_transmitters::FarTransmitter;
 use crate::calibrate::judge::mirror_images::MirrorImage;
 use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
@@ -107,6 +108,10 @@ pub struct Calibration<const D: usize = 2> {
     /// distances. Positions and covariances take this expectation into account.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_distances: Option<PlaneDistances>,
+    /// Transmitters of which the measurements tell the direction, and no more of the distance than that it is not below a
+    /// bound. The position given is one of many in this direction.
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+    pub far_transmitters: Vec<FarTransmitter<D>>,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
     /// with receivers as columns. It is false, too, where receivers or transmitters lie in one line of
@@ -262,6 +267,7 @@ impl<const D: usize> Calibration<D> {
             other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
         }
         self.mirror_images.iter_mut().for_each(|image| image.position = map.apply(image.position));
+        self.far_transmitters.iter_mut().for_each(|far| far.transform(map));
         if let Some(truth) = &mut self.truth {
             truth.points().for_each(point);
         }

@@ -2,6 +2,7 @@
 
 use crate::align::{Transform, first_axes, frame};
 use crate::calibrate::input::selection::Input;
+use crate::calibrate::judge::far_transmitters::{Far, FarTransmitter};
 use crate::calibrate::judge::judgement::{Judged, Other};
 use crate::calibrate::judge::mirror_images::{MirrorImage, Mirrored};
 use crate::calibrate::judge::neighbours::Reason;
@@ -78,6 +79,7 @@ impl<const D: usize> State<'_, D> {
             planar: judged.fits && D == 2,
             dimension_test: (D == 3).then_some(self.dimension_test),
             plane_distances: self.plane_distances,
+            far_transmitters: judged.far.iter().map(|far| self.far_transmitter(far)).collect(),
             determined: judged.determined,
             anchors_agree: judged.anchors_agree,
             receiver_errors: self.receiver_errors(),
@@ -87,7 +89,7 @@ impl<const D: usize> State<'_, D> {
             seed: self.options.seed,
             starts: self.starts,
             laid_together: self.weak.is_some(),
-            agreeing: self.ranked[0].starts,
+            agreeing: judged.agreeing,
             confidence: 1.0 - 0.95f64.powi(self.starts.min(100_000) as i32),
             truth: None,
         };
@@ -135,6 +137,15 @@ impl<const D: usize> State<'_, D> {
             },
             log_likelihood_loss: other.loss,
             receiver_error: error.map(|error| self.receiver_error(&error, true)),
+        }
+    }
+
+    fn far_transmitter(&self, far: &Far<D>) -> FarTransmitter<D> {
+        FarTransmitter {
+            transmitter: self.measured.transmitter_names()[far.transmitter].clone(),
+            direction: far.direction,
+            direction_std: far.direction_std,
+            least_distance: far.least_distance,
         }
     }
 

@@ -137,7 +137,7 @@ impl<const D: usize> State<'_, D> {
 
     /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
     pub(crate) fn warn_of_receivers(&self, warnings: &mut Vec<String>) {
-        let all = self.options.receiver_delays == ReceiverDelays::All;
+        let all = self.has_delays_of_all();
         let metre = self.metre();
         let delays = |f: &&Fault<D>| f.kind == ReceiverErrorKind::Delay;
         if self.left.iter().filter(delays).count() > 4 {
@@ -152,6 +152,12 @@ impl<const D: usize> State<'_, D> {
             return;
         }
         if all {
+            if self.options.receiver_delays == ReceiverDelays::Auto {
+                warnings.push(
+                    "all receivers seem to have delays of their own, which were estimated and taken out; --receiver-delays all says that they do"
+                        .to_string(),
+                );
+            }
             return;
         }
         for error in self.receiver_errors() {

@@ -1,6 +1,7 @@
 //! What the report warns of, with names and a remedy.
 
 use crate::calibrate::input::selection::Input;
+use crate::calibrate::judge::far_transmitters::{Far, drawn_in};
 use crate::calibrate::judge::judgement::Judged;
 use crate::calibrate::judge::lines_and_planes::warn_of_sides;
 use crate::calibrate::judge::neighbours::Reason;
@@ -13,7 +14,7 @@ use crate::degeneracy::{least_per_transmitter, list, space};
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
-use crate::quantity::length;
+use crate::quantity::{length, number};
 use hc::poly::{counted, one_or};
 
 impl<const D: usize> State<'_, D> {
@@ -37,8 +38,9 @@ impl<const D: usize> State<'_, D> {
             );
         }
         self.warn_of_misfit(judged, &mut warnings);
-        let Judged { uncertainty, turning, mirrored, .. } = judged;
-        warn_of_sides(&self.measured, best, uncertainty, turning, mirrored, &mut warnings);
+        let Judged { uncertainty, turning, mirrored, far, .. } = judged;
+        warn_of_sides(&self.measured, &drawn_in(best, far), uncertainty, turning, mirrored, &mut warnings);
+        self.warn_of_far_transmitters(far, &mut warnings);
         warn_of_nodes(&self.measured, best, judged, &mut warnings);
         warnings.extend(judged.apart.iter().filter_map(|other| self.doubt(other)));
         let plain = judged.others.iter().filter(|other| other.reason == Reason::Found).count();
@@ -91,12 +93,29 @@ impl<const D: usize> State<'_, D> {
         }
     }
 
+    /// Transmitters of which the direction alone is told.
+    fn warn_of_far_transmitters(&self, far: &[Far<D>], warnings: &mut Vec<String>) {
+        let least = far.iter().map(|far| far.least_distance).reduce(f64::min);
+        let worst = far.iter().map(|far| far.direction_std).reduce(f64::max);
+        if let (Some(least), Some(worst)) = (least, worst) {
+            let names: Vec<String> =
+                far.iter().map(|far| self.measured.transmitter_names()[far.transmitter].clone()).collect();
+            warnings.push(format!(
+                "transmitters too far from the receivers to tell how far: {}; their directions are told, to {} degrees or better, and they \
+                 are at least {} away (see far_transmitters); the positions given are each one of many in its direction",
+                list(&names),
+                number(worst.to_degrees(), 2),
+                length(self.metre() * least)
+            ));
+        }
+    }
+
     /// A search of which too little ended in the best network.
     fn warn_of_search(&self, judged: &Judged<'_, D>, warnings: &mut Vec<String>) {
         if judged.settled {
             return;
         }
-        let agreeing = self.ranked[0].starts;
+        let agreeing = judged.agreeing;
         if let Some(weak) = &self.weak {
             let names: Vec<String> = weak.iter().map(|&i| self.measured.receiver_names()[i].clone()).collect();
             warnings.push(format!(

@@ -1,0 +1,54 @@
+//! The elimination against its definition.
+
+use super::*;
+use crate::network::tests::random;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::NetworkRefiner;
+
+/// The Schur complement block by block, as the front of this module gives it.
+fn is_eliminated_as_defined<const D: usize>(hearing: usize) {
+    let network: Network<D> = random(30, 20, 1);
+    let heard = |i: usize, j: usize| (i + 7 * j) % 30 < hearing;
+    let values = network.pseudoranges();
+    let measured = (0..600).map(|k| if heard(k / 20, k % 20) { values[k] } else { f64::NAN }).collect();
+    let observations = Observations::new(&Pseudoranges::new(30, 20, measured).unwrap(), |_, _| true);
+    let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY, &Monitor::default());
+    let normal = refiner.normal_at(&network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
+    let size = D * 30;
+    let mut expected = vec![0.0; size * size];
+    for j in 0..observations.transmitters {
+        let factor = normal.inverse_factor(j).unwrap();
+        let rays: Vec<(usize, [f64; D])> = (observations.of_transmitter(j).iter())
+            .map(|o| {
+                let d = network.distance(o.receiver, j);
+                (D * o.receiver, minus(network.transmitters[j], network.receivers[o.receiver]).map(|x| x / d))
+            })
+            .collect();
+        for &(i, u) in &rays {
+            for &(k, v) in &rays {
+                let (solved, last) = factor.invert((v, 1.0));
+                let own = if i == k { 1.0 } else { 0.0 };
+                let between = own - (dot(u, solved) + last);
+                for (a, u) in u.iter().enumerate() {
+                    for (b, v) in v.iter().enumerate() {
+                        expected[(k + b) * size + i + a] += between * u * v;
+                    }
+                }
+            }
+        }
+    }
+    for column in 0..size {
+        for row in column..size {
+            let at = column * size + row;
+            assert!((normal.schur()[at] - expected[at]).abs() < 1e-10, "{hearing} {row} {column}");
+        }
+    }
+}
+
+#[test]
+fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
+    for hearing in [30, 6] {
+        is_eliminated_as_defined::<2>(hearing);
+        is_eliminated_as_defined::<3>(hearing);
+    }
+}
