@@ -1,10 +1,9 @@
 //! `tdoa simulate`.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use cli::files::check_directory;
-use tdoa::{Layout, ReceiverFault, SimulateOptions, simulate};
+use tdoa::{Layout, Pseudoranges, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
 use crate::output;
@@ -56,6 +55,11 @@ pub(crate) struct Arguments {
     /// Mean length of a detour, metres; lengths are exponentially distributed.
     #[arg(long, default_value_t = 1.0)]
     detour_size: f64,
+    /// Candidates of each measurement, as of a detector that finds several peaks: further ones are late by --detour-size
+    /// in the mean, but the second of outliers and detours is the right one. With 2 or more, pseudoranges.csv is a list
+    /// with the columns value, value2, ...
+    #[arg(long, default_value_t = 1)]
+    candidates: usize,
     /// An error of the first receiver in all its measurements: `delay=METRES`, `drift=METRES` from
     /// the first transmitter to the last one, or `move=METRES` after half of the transmitters.
     #[arg(long, value_name = "KIND=METRES")]
@@ -120,6 +124,7 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     options.hearing = arguments.hearing;
     options.detours = arguments.detours;
     options.detour_size = arguments.detour_size;
+    options.candidates = arguments.candidates;
     options.fault = arguments.fault.as_deref().map(fault).transpose()?;
     options.delays = arguments.delays;
     options.seed = arguments.seed;
@@ -133,19 +138,12 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     // A micrometre is finer than any measurement, but tests of exact data want all digits.
     let digits = unit.map_or(6, |unit| unit.decimals(6));
-    let mut table = format!("receiver,{}\n", measured.transmitter_names().join(","));
-    for (i, name) in measured.receiver_names().iter().enumerate() {
-        table += name;
-        for j in 0..measured.transmitters() {
-            match measured.get(i, j).map(|value| unit.map_or(value, |unit| unit.of(value))) {
-                Some(value) if arguments.noise > 0.0 => write!(table, ",{value:.digits$}"),
-                Some(value) => write!(table, ",{value}"),
-                None => write!(table, ","),
-            }
-            .map_err(Failure::unusable)?;
-        }
-        table += "\n";
-    }
+    let cell = |value: Option<f64>| match value.map(|value| unit.map_or(value, |unit| unit.of(value))) {
+        Some(value) if arguments.noise > 0.0 => format!(",{value:.digits$}"),
+        Some(value) => format!(",{value}"),
+        None => ",".to_string(),
+    };
+    let table = if arguments.candidates > 1 { list(measured, cell) } else { matrix(measured, cell) };
     let network = &simulation.network;
     let receivers = positions(measured.receiver_names(), &network.receivers);
     let transmitters = positions(measured.transmitter_names(), &network.transmitters);
@@ -176,6 +174,30 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
         text += &format!("outliers: {}\n", outliers.join(" "));
     }
     output::print(&text)
+}
+
+/// A matrix, with receivers in rows.
+fn matrix(measured: &Pseudoranges, cell: impl Fn(Option<f64>) -> String) -> String {
+    let mut table = format!("receiver,{}\n", measured.transmitter_names().join(","));
+    for (i, name) in measured.receiver_names().iter().enumerate() {
+        table += name;
+        (0..measured.transmitters()).for_each(|j| table += &cell(measured.get(i, j)));
+        table += "\n";
+    }
+    table
+}
+
+/// A list of one measurement a line, with further candidates.
+fn list(measured: &Pseudoranges, cell: impl Fn(Option<f64>) -> String) -> String {
+    let most = measured.cells().iter().map(|(i, j, _)| measured.candidates(i, j).len()).max().unwrap_or(1);
+    let further: String = (2..=most).map(|k| format!(",value{k}")).collect();
+    let mut table = format!("receiver,transmitter,value{further}\n");
+    for (i, j, _) in measured.cells().iter() {
+        table += &format!("{},{}", measured.receiver_names()[i], measured.transmitter_names()[j]);
+        (0..most).for_each(|k| table += &cell(measured.candidates(i, j).get(k).copied()));
+        table += "\n";
+    }
+    table
 }
 
 /// The unit of the measurements, if not the metre.

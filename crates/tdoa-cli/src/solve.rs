@@ -111,6 +111,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.dimensions == 2 && frame.as_ref().is_some_and(Frame::is_spatial) {
         return Err(Frame::too_many_names());
     }
+    if measured.has_candidates() {
+        eprintln!("note: exact solvers take the first candidate of each cell; tdoa calibrate picks among all");
+    }
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }

@@ -1,5 +1,5 @@
 //! The options of how the measurements are read: --units, --speed, --rate, --variable, --transpose,
-//! --columns and --decimal-mark.
+//! --columns, --candidates and --decimal-mark.
 
 use tdoa::read::{ReadOptions, Role, Units};
 
@@ -125,11 +125,16 @@ pub(crate) struct InputArguments {
     #[arg(long)]
     transpose: bool,
     /// What columns hold whose headings do not say it, such as receiver=ch,transmitter=shot,time=t. Roles are
-    /// receiver, transmitter (or event), value (or range), time, sigma, ignore, and reference where each line has
+    /// receiver, transmitter (or event), value (or range), time, candidate (a further value), sigma, ignore, and reference where each line has
     /// the time of the receiver minus that of the reference. Of a matrix: receiver (with --transpose
     /// transmitter) for the column of names, and ignore.
     #[arg(long, value_name = "ROLE=HEADING,...", value_delimiter = ',', value_parser = column)]
     columns: Vec<(Role, String)>,
+    /// Several lines of a list for one receiver and transmitter are candidates, as where a detector finds several peaks
+    /// and cannot tell which is the direct arrival; one of them is picked. Columns value2, value3, ... (toa2, ...)
+    /// beside value say the same without this option.
+    #[arg(long)]
+    candidates: bool,
     /// What stands before decimals; the other mark may stand between thousands. As the numbers have it
     /// if not given.
     #[arg(long, value_enum)]
@@ -157,6 +162,7 @@ impl InputArguments {
         options.variable.clone_from(&self.variable);
         options.transpose = self.transpose;
         options.columns.clone_from(&self.columns);
+        options.candidates = self.candidates;
         options.decimal_mark = self.decimal_mark.map(|mark| match mark {
             Mark::Point => '.',
             Mark::Comma => ',',
@@ -175,6 +181,7 @@ impl InputArguments {
             named("variable", self.variable.as_ref()),
             named("transpose", self.transpose.then_some("yes")),
             named("columns", Some(columns.join(",")).filter(|columns| !columns.is_empty())),
+            named("candidates", self.candidates.then_some("yes")),
             named("decimal-mark", self.decimal_mark.map(said)),
         ]
         .into_iter()

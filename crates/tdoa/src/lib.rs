@@ -52,6 +52,7 @@ pub mod accuracy;
 pub mod align;
 mod bordered;
 pub mod calibrate;
+mod candidates;
 mod cells;
 pub mod degeneracy;
 mod duplicates;

@@ -79,12 +79,27 @@ impl<const D: usize> Observations<D> {
             let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
             keep(i, j).then_some(Observation { receiver: i, transmitter: j, value: *value, precision })
         };
-        let mut entries: Vec<Observation> = measured.cells().iter().filter_map(observe).collect();
+        Observations::in_columns(measured, measured.cells().iter().filter_map(observe).collect())
+    }
+
+    /// Measurements of these nodes, in the order of the receivers.
+    fn in_columns(measured: &Pseudoranges, mut entries: Vec<Observation>) -> Self {
         // Stable: those of a transmitter stay in the order of the receivers.
         entries.sort_by_key(|o| o.transmitter);
         let first = |j: usize| entries.partition_point(|o| o.transmitter < j);
         let columns = (0..=measured.transmitters()).map(first).collect();
         Observations::of(measured.receivers(), entries, columns)
+    }
+
+    /// All candidates of all measured cells, as if each were a measurement: at most one of a cell is right, the
+    /// others are gross errors.
+    pub(crate) fn of_all_candidates(measured: &Pseudoranges) -> Self {
+        let observe = |(i, j, _): (usize, usize, &f64)| {
+            let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
+            let of = move |value: &f64| Observation { receiver: i, transmitter: j, value: *value, precision };
+            measured.candidates(i, j).iter().map(of)
+        };
+        Observations::in_columns(measured, measured.cells().iter().flat_map(observe).collect())
     }
 
     /// Measurements in the order of the transmitters, of which `columns` holds the first of each

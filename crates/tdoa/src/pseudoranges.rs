@@ -1,110 +1,16 @@
 //! The measurement matrix.
 
+mod error;
+
+pub use error::{MAX_CELLS, MAX_MAGNITUDE, PseudorangeError};
+
+use crate::candidates::Candidates;
 use crate::cells::Cells;
-use hc::poly::counted;
-use thiserror::Error;
-
-/// Largest number of cells (receivers times transmitters) of a matrix: 24 million. Memory is
-/// proportional to the number of measured cells.
-pub const MAX_CELLS: usize = 24_000_000;
-
-/// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a
-/// millimetre.
-pub const MAX_MAGNITUDE: f64 = 1e12;
-
-/// Why numbers do not form a [`Pseudoranges`] matrix. Receivers and transmitters are given by name,
-/// or counted from 1.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum PseudorangeError {
-    /// No receivers or no transmitters.
-    #[error("the matrix is empty ({}, {})", counted(*.receivers, "receiver"), counted(*.transmitters, "transmitter"))]
-    Empty {
-        /// Number of rows.
-        receivers: usize,
-        /// Number of columns.
-        transmitters: usize,
-    },
-    /// More than [`MAX_CELLS`] cells.
-    #[error(
-        "{} times {} are more than {MAX_CELLS} cells; split the recording",
-        counted(*.receivers, "receiver"),
-        counted(*.transmitters, "transmitter")
-    )]
-    TooLarge {
-        /// Number of rows.
-        receivers: usize,
-        /// Number of columns.
-        transmitters: usize,
-    },
-    /// The number of values is not receivers times transmitters.
-    #[error("{expected} {what} are needed, one a {per}, but {found} were given")]
-    Count {
-        /// What is counted.
-        what: &'static str,
-        /// What each of them belongs to.
-        per: &'static str,
-        /// How many there should be.
-        expected: usize,
-        /// How many there are.
-        found: usize,
-    },
-    /// An infinite value, or one above [`MAX_MAGNITUDE`].
-    #[error(
-        "receiver {receiver}, transmitter {transmitter}: {value:e} is not a usable pseudorange (metres, magnitude at \
-         most {MAX_MAGNITUDE:e}); leave the cell empty or write nan if it was not measured, and subtract a common \
-         time from each transmitter's column if the clock starts long ago"
-    )]
-    Unusable {
-        /// Name of the receiver.
-        receiver: String,
-        /// Name of the transmitter.
-        transmitter: String,
-        /// The value.
-        value: f64,
-    },
-    /// A standard deviation that is not positive and finite.
-    #[error(
-        "receiver {receiver}, transmitter {transmitter}: the standard deviation must be positive and finite, not {value}"
-    )]
-    Sigma {
-        /// Name of the receiver.
-        receiver: String,
-        /// Name of the transmitter.
-        transmitter: String,
-        /// The value.
-        value: f64,
-    },
-    /// A cell beyond the last receiver or transmitter.
-    #[error("receiver {receiver}, transmitter {transmitter}: there are only {configuration}")]
-    Outside {
-        /// Number of the receiver, from 1.
-        receiver: usize,
-        /// Number of the transmitter, from 1.
-        transmitter: usize,
-        /// The size of the matrix, such as `6r/3s`.
-        configuration: String,
-    },
-    /// Two values for one cell.
-    #[error("receiver {receiver}, transmitter {transmitter} is there twice; keep one measurement of each pair")]
-    Twice {
-        /// Number of the receiver, from 1.
-        receiver: usize,
-        /// Number of the transmitter, from 1.
-        transmitter: usize,
-    },
-    /// Two receivers, or two transmitters, with the same name.
-    #[error("two {kind}s are named {name:?}; names must differ")]
-    DuplicateName {
-        /// "receiver" or "transmitter".
-        kind: &'static str,
-        /// The name.
-        name: String,
-    },
-}
 
 /// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
-/// rows, transmitters j in columns. Cells that were not measured are missing.
+/// rows, transmitters j in columns. Cells that were not measured are missing. Where a detector found several
+/// values for a cell and cannot tell which is right, the cell has them as
+/// [candidates](Pseudoranges::with_candidates), of which a calibration picks one.
 ///
 /// ```
 /// use tdoa::Pseudoranges;
@@ -119,6 +25,8 @@ pub struct Pseudoranges {
     cells: Cells<f64>,
     /// The standard deviations of the same cells.
     sigmas: Option<Cells<f64>>,
+    /// All candidates of those cells that have more than one; their values are the chosen ones.
+    candidates: Option<Cells<Candidates>>,
     receiver_names: Vec<String>,
     transmitter_names: Vec<String>,
     /// Whether the receivers' names were given, not counted.
@@ -179,17 +87,19 @@ impl Pseudoranges {
             transmitter_names: (1..=cells.columns()).map(|j| format!("s{j}")).collect(),
             receivers_named: false,
             sigmas: None,
+            candidates: None,
             cells,
         };
-        let unusable = matrix.cells.iter().find(|(.., v)| v.is_infinite() || v.abs() > MAX_MAGNITUDE);
-        if let Some((i, j, &value)) = unusable {
-            return Err(PseudorangeError::Unusable {
-                receiver: matrix.receiver_names[i].clone(),
-                transmitter: matrix.transmitter_names[j].clone(),
-                value,
-            });
-        }
+        matrix.cells.iter().try_for_each(|(i, j, value)| matrix.check_value(i, j, *value))?;
         Ok(matrix)
+    }
+
+    fn check_value(&self, i: usize, j: usize, value: f64) -> Result<(), PseudorangeError> {
+        if value.is_finite() && value.abs() <= MAX_MAGNITUDE {
+            return Ok(());
+        }
+        let (receiver, transmitter) = (self.receiver_names[i].clone(), self.transmitter_names[j].clone());
+        Err(PseudorangeError::Unusable { receiver, transmitter, value })
     }
 
     /// The matrix with these names of receivers and transmitters.
@@ -250,6 +160,57 @@ impl Pseudoranges {
         Ok(self)
     }
 
+    /// This matrix with further candidates of some cells: receiver, transmitter (both from 0) and value in
+    /// metres, in any order, those of one cell in the order in which they are tried. The value that the cell
+    /// has already is its first candidate; one standard deviation holds for all. NaN is no candidate.
+    ///
+    /// ```
+    /// use tdoa::Pseudoranges;
+    /// let f = Pseudoranges::new(1, 2, vec![1.0, 2.0])?.with_candidates([(0, 1, 1.5)])?;
+    /// assert_eq!((f.candidates(0, 0), f.candidates(0, 1)), (&[1.0][..], &[2.0, 1.5][..]));
+    /// # Ok::<(), tdoa::PseudorangeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a cell is outside or was not measured, or a value is infinite or huge.
+    pub fn with_candidates(
+        mut self,
+        further: impl IntoIterator<Item = (usize, usize, f64)>,
+    ) -> Result<Self, PseudorangeError> {
+        let mut further: Vec<(usize, usize, f64)> = further.into_iter().filter(|(.., value)| !value.is_nan()).collect();
+        // Stable: those of a cell stay in their order.
+        further.sort_by_key(|&(i, j, _)| (i, j));
+        let mut all: Vec<(usize, usize, Candidates)> = Vec::new();
+        for (i, j, value) in further {
+            if i >= self.receivers() || j >= self.transmitters() {
+                let configuration = self.configuration();
+                return Err(PseudorangeError::Outside {
+                    receiver: i.saturating_add(1),
+                    transmitter: j.saturating_add(1),
+                    configuration,
+                });
+            }
+            self.check_value(i, j, value)?;
+            if all.last().is_none_or(|(a, b, _)| (*a, *b) != (i, j)) {
+                let known = self.candidates(i, j).to_vec();
+                if known.is_empty() {
+                    let (receiver, transmitter) = (self.receiver_names[i].clone(), self.transmitter_names[j].clone());
+                    return Err(PseudorangeError::NoFirst { receiver, transmitter });
+                }
+                all.push((i, j, Candidates::new(known)));
+            }
+            all.iter_mut().last().into_iter().for_each(|(.., candidates)| candidates.push(value));
+        }
+        if let Some(known) = &self.candidates {
+            let rest = known.iter().filter(|(i, j, _)| all.binary_search_by_key(&(*i, *j), |c| (c.0, c.1)).is_err());
+            let rest: Vec<_> = rest.map(|(i, j, candidates)| (i, j, candidates.clone())).collect();
+            all.extend(rest);
+            all.sort_by_key(|(i, j, _)| (*i, *j));
+        }
+        self.candidates = (!all.is_empty()).then(|| Cells::new(self.cells.rows(), self.cells.columns(), all));
+        Ok(self.choosing(|_, _, _| 0))
+    }
+
     /// Number of receivers (rows).
     pub fn receivers(&self) -> usize {
         self.cells.rows()
@@ -264,6 +225,45 @@ impl Pseudoranges {
     /// out of range.
     pub fn get(&self, i: usize, j: usize) -> Option<f64> {
         self.cells.get(i, j).copied()
+    }
+
+    /// All candidates of a cell in metres, as they were given; the pseudorange alone where it is the only
+    /// one, none where the cell is missing or out of range.
+    pub fn candidates(&self, i: usize, j: usize) -> &[f64] {
+        match self.candidates.as_ref().and_then(|all| all.get(i, j)) {
+            Some(candidates) => candidates.all(),
+            None => self.cells.get(i, j).map(std::slice::from_ref).unwrap_or_default(),
+        }
+    }
+
+    /// Whether some cell has more than one candidate.
+    pub fn has_candidates(&self) -> bool {
+        self.candidates.is_some()
+    }
+
+    /// Receiver, transmitter and candidates of the cells that have more than one.
+    pub(crate) fn doubtful(&self) -> impl Iterator<Item = (usize, usize, &Candidates)> {
+        self.candidates.iter().flat_map(Cells::iter)
+    }
+
+    /// This matrix with a choice among the candidates of each cell that has more than one, by receiver,
+    /// transmitter and candidates.
+    pub(crate) fn choosing(&self, mut choice: impl FnMut(usize, usize, &Candidates) -> usize) -> Pseudoranges {
+        let Some(candidates) = &self.candidates else { return self.clone() };
+        let candidates = candidates.map(|i, j, all| all.choosing(choice(i, j, all)));
+        let cells = self.cells.map(|i, j, value| candidates.get(i, j).map_or(*value, Candidates::value));
+        Pseudoranges { cells, candidates: Some(candidates), ..self.clone() }
+    }
+
+    /// This matrix with the choice of another one of the same cells.
+    pub(crate) fn choosing_as(&self, other: &Pseudoranges) -> Pseudoranges {
+        let of = |i, j| other.candidates.as_ref().and_then(|all| all.get(i, j)).map_or(0, Candidates::chosen);
+        self.choosing(|i, j, _| of(i, j))
+    }
+
+    /// Whether another choice among the same candidates differs from this one.
+    pub(crate) fn chooses_otherwise(&self, other: &Pseudoranges) -> bool {
+        self.doubtful().zip(other.doubtful()).any(|(a, b)| a.2.chosen() != b.2.chosen())
     }
 
     /// The standard deviation (metres) given for a cell; `None` if there is none.
@@ -316,20 +316,29 @@ impl Pseudoranges {
         configuration(self.receivers(), self.transmitters())
     }
 
-    /// This matrix with other values in the same cells, usable ones, by receiver, transmitter and value.
-    pub(crate) fn map(&self, value: impl FnMut(usize, usize, &f64) -> f64) -> Pseudoranges {
-        Pseudoranges { cells: self.cells.map(value), ..self.clone() }
+    /// This matrix with other values in the same cells and of their candidates, usable ones, by receiver,
+    /// transmitter and value.
+    pub(crate) fn map(&self, mut value: impl FnMut(usize, usize, &f64) -> f64) -> Pseudoranges {
+        let Some(candidates) = &self.candidates else {
+            return Pseudoranges { cells: self.cells.map(value), ..self.clone() };
+        };
+        let candidates = candidates.map(|i, j, all| all.map(|f| value(i, j, f)));
+        let cells = self.cells.map(|i, j, f| candidates.get(i, j).map_or_else(|| value(i, j, f), Candidates::value));
+        Pseudoranges { cells, candidates: Some(candidates), ..self.clone() }
     }
 
-    /// This matrix without the cells for which `keep` does not hold, by receiver, transmitter and value.
+    /// This matrix without the cells for which `keep` does not hold, by receiver, transmitter and value; a
+    /// cell goes with all its candidates.
     pub(crate) fn filter(&self, mut keep: impl FnMut(usize, usize, f64) -> bool) -> Pseudoranges {
         let cells = self.cells.filter(|i, j, value| keep(i, j, *value));
         let sigmas = self.sigmas.as_ref().map(|sigmas| sigmas.filter(|i, j, _| cells.get(i, j).is_some()));
-        Pseudoranges { cells, sigmas, ..self.clone() }
+        let candidates = self.candidates.as_ref().map(|all| all.filter(|i, j, _| cells.get(i, j).is_some()));
+        let candidates = candidates.filter(|all| !all.is_empty());
+        Pseudoranges { cells, sigmas, candidates, ..self.clone() }
     }
 
-    /// The matrix of these receivers and transmitters, in this order, with their names and standard
-    /// deviations.
+    /// The matrix of these receivers and transmitters, in this order, with their names, standard
+    /// deviations and candidates.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -344,6 +353,8 @@ impl Pseudoranges {
             receivers_named: self.receivers_named,
             cells: self.cells.select(receivers, transmitters),
             sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),
+            candidates: (self.candidates.as_ref().map(|all| all.select(receivers, transmitters)))
+                .filter(|all| !all.is_empty()),
         }
     }
 }
@@ -375,37 +386,4 @@ fn check_names(kind: &'static str, expected: usize, names: &[String]) -> Result<
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn select_keeps_order_names_and_sigmas() {
-        let f = Pseudoranges::new(2, 3, vec![0.0, 1.0, 2.0, 10.0, 11.0, f64::NAN]).unwrap();
-        let f = f.with_sigmas(vec![0.1, 0.2, 0.3, 0.4, 0.5, f64::NAN]).unwrap();
-        let g = f.select(&[1, 0], &[2, 0]);
-        assert_eq!((g.get(0, 0), g.get(0, 1), g.get(1, 0), g.get(1, 1)), (None, Some(10.0), Some(2.0), Some(0.0)));
-        assert_eq!(g.receiver_names(), ["r2", "r1"]);
-        assert_eq!(g.transmitter_names(), ["s3", "s1"]);
-        assert_eq!((g.sigma(0, 0), g.sigma(1, 0)), (None, Some(0.3)));
-        assert_eq!(g.configuration(), "2r/2s");
-    }
-
-    #[test]
-    fn refuses_what_is_no_matrix() {
-        assert!(matches!(Pseudoranges::new(0, 3, vec![]), Err(PseudorangeError::Empty { .. })));
-        assert!(matches!(Pseudoranges::new(usize::MAX, 2, vec![]), Err(PseudorangeError::TooLarge { .. })));
-        assert!(matches!(Pseudoranges::new(2, 2, vec![0.0; 3]), Err(PseudorangeError::Count { found: 3, .. })));
-        for bad in [f64::INFINITY, f64::NEG_INFINITY, 2e12] {
-            let error = Pseudoranges::new(1, 2, vec![0.0, bad]).unwrap_err();
-            assert!(error.to_string().starts_with("receiver r1, transmitter s2"), "{error}");
-        }
-        let f = Pseudoranges::new(1, 2, vec![0.0, 1.0]).unwrap();
-        assert!(matches!(f.clone().with_sigmas(vec![1.0, 0.0]), Err(PseudorangeError::Sigma { .. })));
-        let twice = Pseudoranges::from_cells(2, 2, [(1, 0, 1.0), (0, 1, 2.0), (1, 0, f64::NAN), (1, 0, 3.0)]);
-        assert_eq!(twice.unwrap_err(), PseudorangeError::Twice { receiver: 2, transmitter: 1 });
-        let outside = Pseudoranges::from_cells(2, 2, [(0, 2, 1.0)]).unwrap_err();
-        assert_eq!(outside.to_string(), "receiver 1, transmitter 3: there are only 2r/2s");
-        let twice = f.with_names(vec!["a".into()], vec!["b".into(), "b".into()]);
-        assert!(matches!(twice, Err(PseudorangeError::DuplicateName { kind: "transmitter", .. })));
-    }
-}
+mod tests;

@@ -1,6 +1,7 @@
 //! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, NumPy's .npy, or
 //! MATLAB's .mat.
 
+mod candidates;
 mod cells;
 mod columns;
 mod distances;
@@ -48,7 +49,9 @@ use source::{Form, form, open, text};
 /// measurement a line with a first line that names the
 /// columns receiver (or mic, microphone, hydrophone, recorder, channel, anchor, sensor, station, node), transmitter (or
 /// event, shot, source, call, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time,
-/// toa, arrival) and optionally sigma, a standard deviation for each measurement. A list with a column reference has
+/// toa, arrival) and optionally sigma, a standard deviation for each measurement. Columns value2, value3, ... (toa2, and so
+/// on) have further candidates for the value, where a detector found several; [`ReadOptions::candidates`] takes several
+/// lines of one pair as such. A list with a column reference has
 /// differences: the receiver's time minus that of the reference. Selection tables of Raven with a column Event are lists.
 /// What headings do not say, [`ReadOptions::columns`] does. A unit behind a
 /// name, as in `arrival time (ms)`, must be that of the options. Times may be moments of ISO 8601, which count from the

@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
 use crate::network::Network;
-use crate::observations::Observations;
+use crate::observations::{Observation, Observations};
 use crate::refine::place_transmitters;
 
 /// Guessed distances between receivers, from which starts are drawn.
@@ -36,10 +36,14 @@ impl Restarts {
         let m = observations.receivers;
         let mut differences = vec![Vec::new(); m * m];
         for j in 0..observations.transmitters {
-            let column = observations.of_transmitter(j);
-            for (k, a) in column.iter().enumerate() {
-                for b in &column[k + 1..] {
-                    differences[a.receiver * m + b.receiver].push((a.value - b.value).abs());
+            // Of the candidates of two cells, those that differ least bound the distance surely from below.
+            let cells: Vec<&[Observation]> =
+                observations.of_transmitter(j).chunk_by(|a, b| a.receiver == b.receiver).collect();
+            for (k, a) in cells.iter().enumerate() {
+                for b in &cells[k + 1..] {
+                    let pairs = a.iter().flat_map(|a| b.iter().map(|b| (a.value - b.value).abs()));
+                    let least = pairs.fold(f64::INFINITY, f64::min);
+                    differences[a[0].receiver * m + b[0].receiver].push(least);
                 }
             }
         }

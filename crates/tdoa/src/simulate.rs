@@ -53,6 +53,10 @@ pub struct SimulateOptions<const D: usize = 2> {
     pub detours: f64,
     /// Detours are longer by an exponentially distributed length with this mean, metres. Default 1.
     pub detour_size: f64,
+    /// Number of candidates of each measurement, 1 to 100. Further ones are late by exponentially distributed
+    /// lengths with the mean `detour_size`, but the second candidate of outliers and detours is the right value.
+    /// Default 1.
+    pub candidates: usize,
     /// Error of the first receiver. Default `None`.
     pub fault: Option<ReceiverFault>,
     /// Standard deviation of a constant error of each receiver, metres. Default 0.
@@ -81,6 +85,7 @@ impl<const D: usize> SimulateOptions<D> {
             hearing: None,
             detours: 0.0,
             detour_size: 1.0,
+            candidates: 1,
             fault: None,
             delays: 0.0,
             seed: 0,
@@ -181,6 +186,7 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
     for &k in &order[..missing] {
         values[k] = f64::NAN;
     }
+    let right = if options.candidates > 1 { values.clone() } else { Vec::new() };
     let mut outliers = vec![false; cells];
     for &k in &order[missing + outlying..missing + outlying + detours] {
         values[k] += options.detour_size * rng.sample::<f64, _>(Exp1);
@@ -190,7 +196,15 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
         values[k] += options.outlier_size * rng.random_range(-1.0..=1.0);
         outliers[k] = true;
     }
-    Ok(Simulation { network, pseudoranges: Pseudoranges::new(m, n, values)?, outliers })
+    let mut further = Vec::new();
+    for (k, &value) in right.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+        for candidate in 1..options.candidates {
+            let late = if candidate == 1 && outliers[k] { 0.0 } else { rng.sample::<f64, _>(Exp1) };
+            further.push((k / n, k % n, value + options.detour_size * late));
+        }
+    }
+    let pseudoranges = Pseudoranges::new(m, n, values)?.with_candidates(further)?;
+    Ok(Simulation { network, pseudoranges, outliers })
 }
 
 /// Adds the errors that whole receivers have.
@@ -247,6 +261,12 @@ fn check<const D: usize>(options: &SimulateOptions<D>) -> Result<(), SimulateErr
         ("the size of outliers", size, options.outlier_size, (0.0..1e9).contains(&options.outlier_size)),
         ("the share of detours", fraction, options.detours, (0.0..=1.0).contains(&options.detours)),
         ("the size of detours", size, options.detour_size, (0.0..1e9).contains(&options.detour_size)),
+        (
+            "the number of candidates",
+            "from 1 to 100",
+            options.candidates as f64,
+            (1..=100).contains(&options.candidates),
+        ),
         ("the deviation of delays", size, options.delays, (0.0..1e9).contains(&options.delays)),
         ("the first receiver's error", "finite and below 1e9 m", fault, fault.abs() < 1e9),
     ];
@@ -361,6 +381,27 @@ mod tests {
     fn same_seed_same_network() {
         assert_seed_decides(SimulateOptions { layout: Layout::Normal, ..Default::default() });
         assert_seed_decides(SimulateOptions::<3>::new());
+    }
+
+    #[test]
+    fn the_second_candidate_of_what_is_wrong_is_right() {
+        let options =
+            SimulateOptions { detours: 0.25, outliers: 0.125, missing: 0.5, candidates: 3, ..Default::default() };
+        let made = simulate(&options).unwrap();
+        let (measured, network) = (&made.pseudoranges, &made.network);
+        let mut wrong = 0;
+        for (i, j, value) in measured.cells().iter() {
+            let off: Vec<f64> = measured.candidates(i, j).iter().map(|f| f - network.pseudorange(i, j)).collect();
+            assert!(off.len() == 3 && measured.candidates(i, j)[0] == *value);
+            let is_wrong = made.outliers[12 * i + j];
+            assert_eq!([off[0].abs() > 1e-9, off[1].abs() > 1e-9, off[2] > 1e-9], [is_wrong, !is_wrong, true]);
+            wrong += usize::from(is_wrong);
+        }
+        // Of 48 measured cells.
+        assert_eq!(wrong, 18);
+        // First ones are those without further ones.
+        let plain = simulate(&SimulateOptions { candidates: 1, ..options }).unwrap();
+        assert!(!plain.pseudoranges.has_candidates() && plain.pseudoranges.cells() == measured.cells());
     }
 
     #[test]

@@ -20,6 +20,17 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
         counted(measured, "measurement"),
         deviation(calibration),
     );
+    if calibration.with_candidates > 0 {
+        text += &format!(
+            "candidates: of {} with several, {} another than the first\n",
+            counted(calibration.with_candidates, "measurement"),
+            match calibration.chosen.len() {
+                0 => "none takes".to_string(),
+                1 => "one takes".to_string(),
+                many => format!("{many} take"),
+            }
+        );
+    }
     if let Some(choice) = choice(calibration) {
         text += &format!("{choice}\n");
     }

@@ -20,6 +20,7 @@ mod outputs;
 mod rooms;
 mod tdoa_bad_input;
 mod tdoa_calibrate;
+mod tdoa_candidates;
 mod tdoa_experiments;
 mod tdoa_faults;
 mod tdoa_input;

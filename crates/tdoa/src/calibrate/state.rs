@@ -33,6 +33,8 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) neighbours: Vec<Neighbour<D>>,
     /// Starts of the search; small networks that were laid together.
     pub(crate) starts: usize,
+    /// What speaks against the choice among the candidates of the measurements.
+    pub(crate) doubts_choice: Option<&'static str>,
     /// Where small networks were laid together, receivers whose place no overlap of them supports.
     pub(crate) weak: Option<Vec<usize>>,
     /// Errors of receivers that are taken out.
@@ -76,6 +78,7 @@ impl<'a, const D: usize> State<'a, D> {
             deviation: 0.0,
             neighbours: Vec::new(),
             starts: 0,
+            doubts_choice: None,
             weak: None,
             taken: Vec::new(),
             left: Vec::new(),

@@ -6,7 +6,7 @@ use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
 use crate::calibrate::report::calibration::Calibration;
-use crate::calibrate::search::dense::search_whole;
+use crate::calibrate::search::candidates::search_candidates;
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::local::{ReceiverLayout, hearing_is_local, lay_out};
 use crate::calibrate::search::submaps::overlap;
@@ -48,8 +48,9 @@ fn steps<const D: usize>(
         search_without_delays(state, sources)?;
     } else if let Some((layout, places)) = local_layout(input, state, sources)? {
         layout.refine(state, &places)?;
+        state.settle_candidates()?;
     } else {
-        search_whole(state, sources)?;
+        search_candidates(state, sources)?;
     }
     let best = &state.ranked[0];
     state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
@@ -65,7 +66,9 @@ fn steps<const D: usize>(
         state.compare_with_one_sided()?;
     }
     let judged = state.judge(input)?;
-    state.report(input, &judged)
+    let mut found = state.report(input, &judged)?;
+    state.doubts_choice.into_iter().for_each(|why| found.call_not_unique(why.into()));
+    Ok(found)
 }
 
 /// Searches networks for measurements less first guesses of the receivers' delays.
@@ -77,9 +80,12 @@ fn search_without_delays<const D: usize>(
     let options = CalibrateOptions { alternative_margin: 1e9, ..state.options.clone() };
     let measured = on_a_grid(&without_middle_delays(&state.measured));
     let mut found = State::new(measured, None, &options, state.monitor);
-    let ended = search_whole(&mut found, sources);
+    let ended = search_candidates(&mut found, sources);
     (state.so_far, state.ranked, state.deviation) = (found.so_far, found.ranked, found.deviation);
-    (state.floor, state.starts) = (found.floor, found.starts);
+    (state.floor, state.starts, state.doubts_choice) = (found.floor, found.starts, found.doubts_choice);
+    if state.measured.has_candidates() {
+        state.take_choice(state.measured.choosing_as(&found.measured));
+    }
     ended
 }
 

@@ -1,9 +1,10 @@
 //! Where a list has its columns, by their headings or as the options say.
 
+use super::candidates::{check_further, first_of_numbered, further_columns};
 use super::error::ReadError;
 use super::heading::{Heading, check_unit};
 use super::role::Role;
-use super::units::{ReadOptions, Units};
+use super::units::ReadOptions;
 use super::words::{LENGTH, RECEIVER, REFERENCE, SIGMA, TIME, TRANSMITTER, Words};
 
 /// Where a list has its columns.
@@ -11,6 +12,10 @@ pub(super) struct Columns {
     pub(super) receiver: usize,
     pub(super) transmitter: usize,
     pub(super) value: usize,
+    /// Further candidates for the value.
+    pub(super) further: Vec<usize>,
+    /// Whether several lines of one pair are its candidates.
+    pub(super) repeats: bool,
     pub(super) sigma: Option<usize>,
     /// Where each line is the difference of two receivers' times, that of the second.
     pub(super) reference: Option<usize>,
@@ -28,6 +33,8 @@ struct Roles {
     times: Vec<usize>,
     sigmas: Vec<usize>,
     references: Vec<usize>,
+    /// Further candidates, as far as the options say them.
+    candidates: Vec<usize>,
     /// How many of receiver, transmitter and value are said for sure.
     sure: usize,
 }
@@ -47,7 +54,7 @@ impl Roles {
         let (receivers, transmitters, values) = (found(&[&RECEIVER]), found(&[&TRANSMITTER]), found(&[&LENGTH, &TIME]));
         let times = values.iter().copied().filter(|&k| headings[k].may_be(&TIME)).collect();
         let (sigmas, references) = (under(SIGMA.sure), under(REFERENCE.sure));
-        Roles { receivers, transmitters, values, times, sigmas, references, sure }
+        Roles { receivers, transmitters, values, times, sigmas, references, candidates: Vec::new(), sure }
     }
 
     /// Puts what the options say in the place of what headings do.
@@ -65,6 +72,7 @@ impl Roles {
         put(Role::Transmitter, &mut self.transmitters);
         put(Role::Sigma, &mut self.sigmas);
         put(Role::Reference, &mut self.references);
+        put(Role::Candidate, &mut self.candidates);
         let values: Vec<usize> = given(Role::Value).chain(given(Role::Time)).collect();
         if !values.is_empty() {
             (self.values, self.times) = (values, given(Role::Time).collect());
@@ -157,8 +165,9 @@ pub(super) fn list_columns(
     said: &[(Role, usize)],
     file: &str,
     line: u64,
-    units: Option<Units>,
+    options: &ReadOptions,
 ) -> Result<Option<Columns>, ReadError> {
+    let units = options.units;
     let headings = headings(cells);
     let mut roles = Roles::of(&headings);
     let is_list = roles.are_of_list(&headings);
@@ -183,7 +192,11 @@ pub(super) fn list_columns(
             ),
         });
     }
-    let Roles { receivers, transmitters, values, times, sigmas, references, .. } = roles;
+    let Roles { receivers, transmitters, mut values, mut times, sigmas, references, candidates, .. } = roles;
+    if let (true, Some((first, is_time))) = (values.is_empty(), first_of_numbered(&headings)) {
+        values.push(first);
+        times.extend(is_time.then_some(first));
+    }
     let needed = [("receiver", &receivers), ("transmitter", &transmitters), ("value", &values)];
     for (role, found) in needed.iter().chain(&[("sigma", &sigmas), ("reference", &references)]) {
         if let [a, b, ..] = found.as_slice() {
@@ -214,7 +227,17 @@ pub(super) fn list_columns(
             cells[*value], cells[k]
         )));
     }
+    let is_free = |k: usize| said.iter().all(|(_, given)| *given != k);
+    let further = if candidates.is_empty() { further_columns(&headings, *value, is_free) } else { candidates };
+    check_further(cells, &headings, *value, &further, is_free, units).map_err(wrong)?;
     let reference = references.first().copied();
+    if reference.is_some() && (!further.is_empty() || options.candidates) {
+        return Err(bad(
+            "candidates of differences are not read; give times, or leave out the further columns (--columns ignore=...) and \
+             --candidates"
+                .into(),
+        ));
+    }
     if reference.is_some() && sigma.is_some() {
         return Err(bad(
             "standard deviations of differences are not read; leave out that column (--columns ignore=...)".into(),
@@ -223,7 +246,8 @@ pub(super) fn list_columns(
     let headed = |name: &str| headings.iter().position(|heading| heading.name == name);
     let selection = headed("view").and(headed("selection"));
     let (receiver, transmitter, value) = (*receiver, *transmitter, *value);
-    Ok(Some(Columns { receiver, transmitter, value, sigma, reference, selection, count: cells.len() }))
+    let (repeats, count) = (options.candidates, cells.len());
+    Ok(Some(Columns { receiver, transmitter, value, further, repeats, sigma, reference, selection, count }))
 }
 
 /// Refuses columns of a matrix that hold something else than measurements.

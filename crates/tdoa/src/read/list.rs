@@ -1,5 +1,6 @@
 //! The CSV list: one measurement a line.
 
+use std::collections::hash_map::Entry::{Occupied, Vacant};
 use std::collections::{HashMap, HashSet};
 
 use hc::poly::counted;
@@ -26,6 +27,8 @@ pub(super) fn list(
     let mut receivers = Names::default();
     let mut transmitters = Names::default();
     let mut entries: HashMap<(usize, usize), Entry> = HashMap::new();
+    // Candidates behind the first of a pair.
+    let mut further: Vec<(usize, usize, f64)> = Vec::new();
     let mut pairs = Pairs::default();
     let mut selections = HashSet::new();
     for record in records {
@@ -59,9 +62,16 @@ pub(super) fn list(
             text: shorten(&cells[column]),
             remedy,
         };
-        let value =
-            numbers.measurement(&cells[columns.value], units).map_err(|why| not_a_number(columns.value, why))?;
-        let value = value * factor;
+        let mut measurement = |k: usize| {
+            let value = numbers.measurement(&cells[k], units).map_err(|why| not_a_number(k, why))?;
+            Ok::<f64, ReadError>(value * factor)
+        };
+        let mut value = measurement(columns.value)?;
+        let mut others: Vec<f64> = columns.further.iter().map(|&k| measurement(k)).collect::<Result<_, _>>()?;
+        others.retain(|other| !other.is_nan());
+        if value.is_nan() && !others.is_empty() {
+            value = others.remove(0);
+        }
         let sigma = columns.sigma.map(|k| numbers.number(&cells[k]).map_err(|why| not_a_number(k, why))).transpose()?;
         let sigma = sigma.map_or(1.0, |sigma| sigma * factor);
         let at = (receivers.index(receiver), transmitters.index(transmitter));
@@ -70,7 +80,7 @@ pub(super) fn list(
         if value.is_nan() {
             continue;
         }
-        if entries.len().max(pairs.len()) >= MAX_CELLS {
+        if (entries.len() + further.len() + others.len()).max(pairs.len()) >= MAX_CELLS {
             return Err(ReadError::TooManyCells { file: file.to_string(), line });
         }
         if let (Some(second), Some(reference)) = (second, reference) {
@@ -80,12 +90,25 @@ pub(super) fn list(
             pairs.add(at.1, [at.0, second], value);
             continue;
         }
-        if let Some(earlier) = entries.insert(at, Entry { value, sigma, line }) {
-            return Err(bad(format!(
-                "receiver {receiver}, transmitter {transmitter} is there twice, on line {} too; keep one measurement of each pair",
-                earlier.line
-            )));
+        match entries.entry(at) {
+            Vacant(free) => _ = free.insert(Entry { value, sigma, line }),
+            Occupied(earlier) if !columns.repeats => {
+                return Err(bad(format!(
+                    "receiver {receiver}, transmitter {transmitter} is there twice, on line {} too; keep one measurement of each pair, or \
+                     give --candidates if only one of them is right and it is not known which",
+                    earlier.get().line
+                )));
+            }
+            Occupied(earlier) if earlier.get().sigma != sigma => {
+                return Err(bad(format!(
+                    "receiver {receiver}, transmitter {transmitter} has another standard deviation than on line {}; give one for all \
+                     candidates of a pair",
+                    earlier.get().line
+                )));
+            }
+            Occupied(_) => further.push((at.0, at.1, value)),
         }
+        further.extend(others.into_iter().map(|other| (at.0, at.1, other)));
     }
     if receivers.names.is_empty() {
         return Err(ReadError::Empty { file: file.to_string() });
@@ -100,6 +123,7 @@ pub(super) fn list(
         Pseudoranges::from_cells(m, n, entries.iter().map(|(&(i, j), entry)| (i, j, entry.value)))
     };
     let measured = measured.map_err(wrap)?.with_names(receivers.names, transmitters.names).map_err(wrap)?;
+    let measured = measured.with_candidates(further).map_err(wrap)?;
     refuse_thousands(&numbers, separator, units, &measured, file)?;
     if columns.sigma.is_none() {
         return Ok(measured);

@@ -12,6 +12,8 @@ pub enum Role {
     Value,
     /// Times, whose unit must be said.
     Time,
+    /// Further candidates for the value; the columns in the order in which they are given.
+    Candidate,
     /// Standard deviations.
     Sigma,
     /// Names of the receivers whose times are taken off.
@@ -28,6 +30,7 @@ const ROLES: &[(&str, Role)] = &[
     ("value", Role::Value),
     ("range", Role::Value),
     ("time", Role::Time),
+    ("candidate", Role::Candidate),
     ("sigma", Role::Sigma),
     ("reference", Role::Reference),
     ("ignore", Role::Ignore),

@@ -24,10 +24,14 @@ pub(super) fn parse(text: &str, file: &str, options: &ReadOptions) -> Result<Pse
     let first = records.next().ok_or_else(|| ReadError::Empty { file: file.to_string() })??;
     let said = given(&first.cells, options, file, first.line)?;
     if !options.transpose && has_only_names(&first.cells) {
-        let columns = list_columns(&first.cells, &said, file, first.line, options.units)?;
+        let columns = list_columns(&first.cells, &said, file, first.line, options)?;
         if let Some(columns) = columns {
             return list(records, &columns, numbers, table.separator, file, units);
         }
+    }
+    if options.candidates {
+        let problem = "--candidates is for a list of one measurement a line; a matrix has one value a cell".to_string();
+        return Err(ReadError::Columns { file: file.to_string(), line: first.line, problem });
     }
     // The column of names comes first, what is no measurement goes.
     let names_of = if options.transpose { Role::Transmitter } else { Role::Receiver };

@@ -1,3 +1,4 @@
+mod candidates;
 mod tables;
 
 use proptest::prelude::{ProptestConfig, any, proptest};

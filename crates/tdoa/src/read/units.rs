@@ -116,6 +116,9 @@ pub struct ReadOptions {
     /// What stands before decimals, a point or a comma; the other may stand between thousands. Default
     /// `None`: as the numbers have it, but where these may be a thousand times as large they are refused.
     pub decimal_mark: Option<char>,
+    /// Whether several lines of a list for one receiver and transmitter are candidates, of which a calibration picks
+    /// one. Default: no, a pair that is there twice is an error.
+    pub candidates: bool,
 }
 
 impl ReadOptions {
@@ -125,6 +128,8 @@ impl ReadOptions {
             "--columns"
         } else if self.decimal_mark.is_some() {
             "--decimal-mark"
+        } else if self.candidates {
+            "--candidates"
         } else {
             return Ok(());
         };

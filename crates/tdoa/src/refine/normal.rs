@@ -254,7 +254,19 @@ impl<const D: usize> Normal<D> {
                 for (o, ray) in column.iter().zip(rays) {
                     let ((y, last), u) = coupled(ray);
                     let at = D * o.receiver;
-                    self.few.extend((0..D).map(|axis| (at + axis, (y.map(|y| y * u[axis]), last * u[axis]))));
+                    let place = |axis: usize| (at + axis, (y.map(|y| y * u[axis]), last * u[axis]));
+                    // Candidates of one cell stand side by side, and add up.
+                    let same = self.few.len().checked_sub(D).filter(|&first| self.few[first].0 == at);
+                    match same {
+                        None => self.few.extend((0..D).map(place)),
+                        Some(first) => {
+                            for (axis, (_, (p, end))) in self.few[first..].iter_mut().enumerate() {
+                                let (_, (more, more_end)) = place(axis);
+                                (0..D).for_each(|k| p[k] += more[k]);
+                                *end += more_end;
+                            }
+                        }
+                    }
                 }
                 for (a, &(column, (p, last))) in self.few.iter().enumerate() {
                     for (g, z) in p.into_iter().chain([last]).zip(z.0.into_iter().chain([z.1])) {
@@ -272,7 +284,8 @@ impl<const D: usize> Normal<D> {
                 let ((y, last), u) = coupled(ray);
                 let at = D * o.receiver;
                 for (row, y) in rows.chunks_exact_mut(size).zip(y.into_iter().chain([last])) {
-                    row[at..at + D].copy_from_slice(&u.map(|u| y * u));
+                    // Candidates of one cell add up.
+                    row[at..at + D].iter_mut().zip(u).for_each(|(entry, u)| *entry += y * u);
                 }
             }
             for (row, z) in rows.chunks_exact(size).zip(z.0.into_iter().chain([z.1])) {

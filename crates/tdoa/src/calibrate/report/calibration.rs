@@ -8,6 +8,7 @@ use crate::calibrate::judge::far_transmitters::FarTransmitter;
 use crate::calibrate::judge::mirror_images::MirrorImage;
 use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
+use crate::calibrate::report::candidates::ChosenCandidate;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;
@@ -128,6 +129,13 @@ pub struct Calibration<const D: usize = 2> {
     /// Receivers of which the measurements show two places, most likely as they hear a reflection, which is left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_echoes: Vec<ReceiverEcho>,
+    /// Measurements of which another candidate than the first was chosen, in the order of the matrix; see
+    /// [`Pseudoranges::with_candidates`](crate::Pseudoranges::with_candidates). Residuals are those of the chosen ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub chosen: Vec<ChosenCandidate>,
+    /// Number of measurements that have more than one candidate.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub with_candidates: usize,
     /// Systematic errors of the receivers, and the covariances with them. `None` where fewer than ten
     /// measurements are left over, there are more than 100 receivers, or errors are one-sided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -157,6 +165,11 @@ fn counts<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [usize; 2] {
 /// Standard deviations of the coordinates.
 fn deviations<const D: usize>(covariances: &[Option<[[f64; D]; D]>]) -> Vec<Option<[f64; D]>> {
     covariances.iter().map(|c| c.map(|c| from_fn(|k| c[k][k].max(0.0).sqrt()))).collect()
+}
+
+/// What is left out where nothing has candidates.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Results that were written before they said so.
@@ -297,6 +310,7 @@ impl<const D: usize> Calibration<D> {
             error.size *= factor;
         }
         self.receiver_echoes.iter_mut().for_each(|echo| echo.wall *= factor);
+        self.chosen.iter_mut().for_each(|chosen| chosen.value *= factor);
         if let Some(PlaneDistances { receivers, transmitters, change }) = &mut self.plane_distances {
             [receivers, transmitters, change].into_iter().for_each(|length| *length *= factor);
         }

@@ -1,6 +1,7 @@
 //! The result of a calibration and what it warns of.
 
 pub(crate) mod calibration;
+pub(crate) mod candidates;
 pub(crate) mod compare;
 pub(crate) mod network;
 pub(crate) mod receiver_errors;

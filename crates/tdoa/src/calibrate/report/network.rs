@@ -38,6 +38,7 @@ impl<const D: usize> State<'_, D> {
         };
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
+        let (chosen, with_candidates) = self.chosen(input);
         let mut calibration = Calibration {
             configuration: input.table.configuration(),
             receiver_names: input.table.receiver_names().to_vec(),
@@ -84,6 +85,8 @@ impl<const D: usize> State<'_, D> {
             anchors_agree: judged.anchors_agree,
             receiver_errors: self.receiver_errors(),
             receiver_echoes: self.receiver_echoes(),
+            chosen,
+            with_candidates,
             systematic: None,
             warnings: self.warnings(input, judged),
             seed: self.options.seed,

@@ -17,7 +17,7 @@ use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, RefinedNetwor
 use hc::Monitor;
 
 /// No measurement is trusted beyond this share of the network's diameter.
-const RESOLUTION: f64 = 1e-9;
+pub(crate) const RESOLUTION: f64 = 1e-9;
 
 /// Searches networks for the measurements of a state, which has none yet.
 pub(crate) fn search_whole<const D: usize>(
@@ -91,7 +91,7 @@ pub(crate) fn search_whole<const D: usize>(
 
 /// The nodes that the search works on: where there are many, some of the better observed half,
 /// evenly spaced, because neighbours in a recording are often neighbours in the plane.
-fn search_part<const D: usize>(measured: &Pseudoranges, options: &CalibrateOptions<D>) -> Usable {
+pub(crate) fn search_part<const D: usize>(measured: &Pseudoranges, options: &CalibrateOptions<D>) -> Usable {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {
         if total <= most {
@@ -119,7 +119,7 @@ fn search_part<const D: usize>(measured: &Pseudoranges, options: &CalibrateOptio
 }
 
 /// Extends networks of a part of the nodes to all of them and refines them.
-fn complete<const D: usize>(
+pub(crate) fn complete<const D: usize>(
     observations: &Observations<D>,
     part: &Usable,
     networks: impl Iterator<Item = RefinedNetwork<D>>,

@@ -2,7 +2,7 @@
 //! neighbouring receivers, laid together where they overlap, then refined as one.
 
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, SearchOptions, check};
-use crate::calibrate::search::dense::search_whole;
+use crate::calibrate::search::candidates::search_candidates;
 use crate::calibrate::search::deviation::{median_size, typical_deviation};
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::submaps::{FIT, Submap, fit, largest, overlap};
@@ -157,7 +157,7 @@ fn solve<const D: usize>(
     let Ok(kept) = usable::<D>(&part) else { return Ok(None) };
     let part = part.select(&kept.receivers, &kept.transmitters);
     let mut found = State::new(part, known, options, monitor);
-    match search_whole(&mut found, &[]) {
+    match search_candidates(&mut found, &[]) {
         Ok(()) => {}
         Err(error @ CalibrateError::Cancelled(_)) => return Err(error),
         Err(_) => return Ok(None),

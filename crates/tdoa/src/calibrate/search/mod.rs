@@ -1,5 +1,7 @@
 //! Networks that fit the measurements: starts, rivals, and their last refinement.
 
+pub(crate) mod candidates;
+pub(crate) mod choices;
 pub(crate) mod dense;
 pub(crate) mod deviation;
 pub(crate) mod finish;
