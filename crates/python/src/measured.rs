@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, elements};
 use crate::errors::{Failure, guarded};
-use numpy::PyReadonlyArrayDyn;
+use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyDict;
@@ -18,6 +18,8 @@ pub(crate) struct Table<'py> {
     values: PyReadonlyArrayDyn<'py, f64>,
     /// Standard deviations of the cells, metres.
     sigmas: Option<PyReadonlyArrayDyn<'py, f64>>,
+    /// Further candidates of the cells, a layer for each, NaN where a cell has no more.
+    candidates: Option<PyReadonlyArrayDyn<'py, f64>>,
     /// Names of receivers and transmitters.
     receivers: Option<Vec<String>>,
     transmitters: Option<Vec<String>>,
@@ -44,6 +46,18 @@ impl Table<'_> {
         }
         if let Some(sigmas) = &self.sigmas {
             measured = measured.with_sigmas(elements(sigmas, 2)?.0).map_err(Failure::input)?;
+        }
+        if let Some(candidates) = &self.candidates {
+            let (all, layers) = elements(candidates, 3)?;
+            if layers[..2] != shape[..] {
+                return Err(Failure::Input(format!(
+                    "candidates must have the rows and columns of the pseudoranges, {shape:?}, not {:?}",
+                    &layers[..2]
+                )));
+            }
+            let (n, most, factor) = (shape[1], layers[2], self.factor.unwrap_or(1.0));
+            let cell = |(k, value): (usize, f64)| (k / most / n, k / most % n, factor * value);
+            measured = measured.with_candidates(all.into_iter().enumerate().map(cell)).map_err(Failure::input)?;
         }
         Ok(measured)
     }
@@ -83,11 +97,13 @@ pub(crate) fn read<'py>(
     transpose: bool,
     columns: Vec<(String, String)>,
     decimal_mark: Option<char>,
+    candidates: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     guarded(|| {
         let mut options = ReadOptions::default();
         options.transpose = transpose;
         options.decimal_mark = decimal_mark;
+        options.candidates = candidates;
         for (role, heading) in columns {
             let role = role.parse::<Role>().map_err(|error| Failure::Input(format!("columns: {error}")))?;
             options.columns.push((role, heading));
@@ -105,10 +121,32 @@ pub(crate) fn read<'py>(
         found.set_item("values", array(py, measured.dense(), &[m, n])?)?;
         let sigmas = measured.has_sigmas().then(|| array(py, (0..m * n).map(sigma).collect(), &[m, n])).transpose()?;
         found.set_item("sigmas", sigmas)?;
+        found.set_item("candidates", further(py, &measured)?)?;
         found.set_item("receiver_names", measured.receivers_named().then(|| measured.receiver_names()))?;
         found.set_item("transmitter_names", measured.transmitter_names())?;
         Ok(found)
     })
+}
+
+/// Further candidates as an array with a layer for each, NaN where a cell has no more; `None` where none has any.
+fn further<'py>(py: Python<'py>, measured: &Pseudoranges) -> Result<Option<Bound<'py, PyArrayDyn<f64>>>, Failure> {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let most = measured.cells().iter().map(|(i, j, _)| measured.candidates(i, j).len()).max().unwrap_or(1);
+    if most < 2 {
+        return Ok(None);
+    }
+    // One cell with many candidates must not fill the memory.
+    if m.saturating_mul(n).saturating_mul(most - 1) > MAX_CELLS {
+        return Err(Failure::Input(format!(
+            "{most} candidates of one cell of {m} x {n} are too many for an array; leave out the least likely ones"
+        )));
+    }
+    let mut all = vec![f64::NAN; m * n * (most - 1)];
+    for (i, j, _) in measured.cells().iter() {
+        let row = (i * n + j) * (most - 1);
+        measured.candidates(i, j).iter().skip(1).enumerate().for_each(|(k, value)| all[row + k] = *value);
+    }
+    Ok(Some(array(py, all, &[m, n, most - 1])?))
 }
 
 fn unit(name: &str, speed: Option<f64>, rate: Option<f64>) -> Result<Units, Failure> {

@@ -108,6 +108,31 @@ def test_long_frames(tmp_path):
             tdoa.calibrate(bad)
 
 
+def test_candidates():
+    made = tdoa.simulate(10, 20, noise=0.001, seed=3)
+    right = made.pseudoranges
+    # Of every third cell the first candidate is late and the second right.
+    wrong = np.arange(200).reshape(10, 20) % 3 == 0
+    late = right + 0.5 + np.arange(200).reshape(10, 20) % 7
+    first, second = np.where(wrong, late, right), np.where(wrong, right, np.nan)
+    table = tdoa.Pseudoranges(first, candidates=second[:, :, None])
+    found = tdoa.calibrate(table, dimensions=2)
+    expected = tdoa.calibrate(right, dimensions=2)
+    assert np.allclose(found.receivers, expected.receivers, atol=1e-6)
+    assert [(each["receiver"], each["transmitter"], each["candidate"]) for each in found.data["chosen"]] == [
+        (f"r{i + 1}", f"s{j + 1}", 2) for i, j in np.argwhere(wrong)
+    ]
+    text = "mic,event,value\na,e,1\na,e,2\nb,e,3\n"
+    with pytest.raises(tdoa.InputError, match="twice"):
+        tdoa.read(io.StringIO(text))
+    read = tdoa.read(io.StringIO(text), candidates=True)
+    assert read.values.tolist() == [[1.0], [3.0]]
+    assert np.array_equal(read.candidates, [[[2.0]], [[np.nan]]], equal_nan=True)
+    assert tdoa.read(io.StringIO("mic,event,value\na,e,1\n")).candidates is None
+    with pytest.raises(tdoa.InputError, match="candidates must have the shape"):
+        tdoa.Pseudoranges(right, candidates=right)
+
+
 def test_open_files(tmp_path):
     import io
 

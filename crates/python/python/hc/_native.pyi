@@ -64,6 +64,7 @@ def read(
     transpose: bool,
     columns: list[tuple[str, str]],
     decimal_mark: str | None,
+    candidates: bool,
 ) -> _Found: ...
 @final
 class Fibre: ...

@@ -51,6 +51,7 @@ _Names = Sequence[str] | tuple[Sequence[str] | None, Sequence[str] | None] | Map
 class Pseudoranges:
     values: _Floats
     sigmas: _Floats | None
+    candidates: _Floats | None
     receiver_names: list[str] | None
     transmitter_names: list[str] | None
     def __init__(
@@ -60,6 +61,7 @@ class Pseudoranges:
         sigmas: ArrayLike | None = None,
         receiver_names: Iterable[str] | None = None,
         transmitter_names: Iterable[str] | None = None,
+        candidates: ArrayLike | None = None,
     ) -> None: ...
     @property
     def shape(self) -> tuple[int, int]: ...
@@ -229,4 +231,5 @@ def read(
     transpose: bool = False,
     columns: Mapping[str, str | Sequence[str]] | None = None,
     decimal_mark: Literal[".", ","] | None = None,
+    candidates: bool = False,
 ) -> Pseudoranges: ...

@@ -23,13 +23,17 @@ class Pseudoranges(Result):
         Pseudoranges in metres, receivers in rows, transmitters in columns; NaN where nothing was measured.
     sigmas : ndarray of float, shape (m, n), or None
         Their standard deviations in metres.
+    candidates : ndarray of float, shape (m, n, k), or None
+        Further candidates for the values, metres, where a detector found several and cannot tell which is right; NaN where a cell
+        has no more. `calibrate` picks one of each cell.
     receiver_names, transmitter_names : list of str, or None
         Names of the nodes.
     """
 
-    def __init__(self, values, *, sigmas=None, receiver_names=None, transmitter_names=None):
+    def __init__(self, values, *, sigmas=None, receiver_names=None, transmitter_names=None, candidates=None):
         self.values = real_matrix("pseudoranges", values)
         self.sigmas = None if sigmas is None else real_matrix("sigmas", sigmas)
+        self.candidates = None if candidates is None else _layers(candidates, self.values.shape)
         self.receiver_names = strings("receiver_names", receiver_names)
         self.transmitter_names = strings("transmitter_names", transmitter_names)
 
@@ -81,6 +85,17 @@ def real_matrix(name, values):
         raise InputError(f"{name} must be a matrix of numbers: {error}") from None
 
 
+def _layers(candidates, shape):
+    """Further candidates of a table of this shape, one behind the other along the last axis."""
+    try:
+        array = np.require(np.asarray(candidates, dtype=float), requirements="A")
+    except (TypeError, ValueError) as error:
+        raise InputError(f"candidates must be numbers: {error}") from None
+    if array.ndim != 3 or array.shape[:2] != shape:
+        raise InputError(f"candidates must have the shape {(*shape, 'k')}, with k further ones of each cell, not {array.shape}")
+    return array
+
+
 def _long(frame, factor):
     """The pseudoranges of a frame of one measurement a row, read as the program reads such a list; None if it is no list."""
     if any(name is not None for name in frame.index.names):
@@ -92,7 +107,7 @@ def _long(frame, factor):
     data = frame.to_csv(index=False).encode()
     units = (None, None) if factor is None else ("s", factor)
     try:
-        return _pseudoranges(_native.read("DataFrame", data, *units, None, None, False, [], None))
+        return _pseudoranges(_native.read("DataFrame", data, *units, None, None, False, [], None, False))
     except InputError as error:
         # Their unit is told in another way here.
         words = re.sub(r"give --units \w+ --speed V", "give speed=V and the times in seconds", str(error))
@@ -109,7 +124,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
         is_path = isinstance(pseudoranges, (str, os.PathLike))
         given = repr(os.fspath(pseudoranges)) if is_path else "file"
         raise InputError(f"pseudoranges must be a table, not a file; read it first: tdoa.read({given}), with the units of its numbers")
-    receivers = transmitters = sigmas = None
+    receivers = transmitters = sigmas = candidates = None
     factor = None
     if speed is not None:
         factor = number("speed", speed)
@@ -121,7 +136,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
     if is_frame and (measured := _long(pseudoranges, factor)) is not None:
         pseudoranges, in_metres = measured, None
     if isinstance(pseudoranges, Pseudoranges):
-        values, sigmas = pseudoranges.values, pseudoranges.sigmas
+        values, sigmas, candidates = pseudoranges.values, pseudoranges.sigmas, pseudoranges.candidates
         receivers, transmitters = pseudoranges.receiver_names, pseudoranges.transmitter_names
     elif is_frame:
         frame = pseudoranges
@@ -160,6 +175,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
     given = {
         "values": values,
         "sigmas": sigmas,
+        "candidates": candidates,
         "receivers": receivers,
         "transmitters": transmitters,
         "factor": in_metres,
@@ -167,7 +183,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
     return given, single, factor
 
 
-def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=False, columns=None, decimal_mark=None):
+def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=False, columns=None, decimal_mark=None, candidates=False):
     """Read pseudoranges from a file: CSV (a matrix or a list of measurements), .npy or .mat.
 
     Parameters
@@ -185,10 +201,13 @@ def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=Fa
     transpose : bool
         Whether the rows of a matrix are the transmitters.
     columns : dict, optional
-        What columns hold whose headings do not say it: headings by "receiver", "transmitter", "value", "time", "sigma", "reference"
+        What columns hold whose headings do not say it: headings by "receiver", "transmitter", "value", "time", "candidate", "sigma", "reference"
         (each line is the time of the receiver minus that of the reference) or "ignore" (which may have a list of headings).
     decimal_mark : {".", ","}, optional
         What stands before decimals; the other mark may stand between thousands. As the numbers have it by default.
+    candidates : bool
+        Whether several lines of a list for one receiver and transmitter are candidates, of which `calibrate` picks one. Columns
+        value2, value3, ... are candidates without it.
 
     Returns
     -------
@@ -207,7 +226,7 @@ def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=Fa
     variable = None if variable is None else text("variable", variable)
     if decimal_mark not in (None, ".", ","):
         raise InputError(f"decimal_mark must be '.' or ',', not {decimal_mark!r}")
-    more = bool(transpose), _headings(columns), decimal_mark
+    more = bool(transpose), _headings(columns), decimal_mark, bool(candidates)
     data = None
     if hasattr(path, "read"):
         path, data = _contents(path)
