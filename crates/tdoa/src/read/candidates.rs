@@ -1,8 +1,7 @@
 //! Columns of a list that hold further candidates: `value2`, `value3`, ... beside `value`, and the same behind other
 //! names of that column.
 
-use super::columns::quoted;
-use super::heading::{Heading, check_unit};
+use super::heading::{Heading, check_unit, quoted};
 use super::units::Units;
 use super::words::{LENGTH, SIGMA, TIME};
 

@@ -2,7 +2,7 @@
 
 use super::candidates::{check_further, first_of_numbered, further_columns};
 use super::error::ReadError;
-use super::heading::{Heading, check_unit};
+use super::heading::{Heading, check_unit, quoted};
 use super::role::Role;
 use super::units::ReadOptions;
 use super::words::{LENGTH, RECEIVER, REFERENCE, SIGMA, TIME, TRANSMITTER, Words};
@@ -113,12 +113,6 @@ fn headings<S: AsRef<str>>(cells: &[S]) -> Vec<Heading> {
 pub fn heads_list<S: AsRef<str>>(cells: &[S]) -> bool {
     let headings = headings(cells);
     Roles::of(&headings).are_of_list(&headings)
-}
-
-/// A heading as an option says it, in quotes where the shell needs them.
-pub(super) fn quoted(heading: &str) -> String {
-    let is_plain = heading.chars().all(|c| c.is_alphanumeric() || "_-.".contains(c)) && !heading.is_empty();
-    if is_plain { heading.to_string() } else { format!("{heading:?}") }
 }
 
 /// The columns that the options name, each with its place.

@@ -3,9 +3,9 @@
 
 use std::collections::HashSet;
 
-use super::columns::quoted;
 use super::grid::Grid;
 use super::heading::Heading;
+use super::heading::quoted;
 use super::numbers::{is_value, number};
 
 /// What the first column holds.

@@ -220,6 +220,12 @@ pub(super) fn check_unit(
     }
 }
 
+/// A heading as an option says it, in quotes where the shell needs them.
+pub(super) fn quoted(heading: &str) -> String {
+    let is_plain = heading.chars().all(|c| c.is_alphanumeric() || "_-.".contains(c)) && !heading.is_empty();
+    if is_plain { heading.to_string() } else { format!("{heading:?}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,12 +1,12 @@
 //! How much of what does not fit in the plane errors of receivers explain there: that is no reason for heights.
 
-use crate::calibrate::receivers::errors::KINDS;
+use crate::calibrate::receivers::errors::{ReceiverErrorKind, price};
 use crate::calibrate::report::calibration::Calibration;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::log_density;
 
 /// How much more likely the measurements are once the errors of receivers are taken out of a network (natural
-/// logarithm). An error pays for the choice of receiver and kind, and for its size as in Schwarz's criterion (1978).
+/// logarithm), less the price of these.
 pub(super) fn explained_by_errors<const D: usize>(
     measured: &Pseudoranges,
     with_errors: &Calibration<D>,
@@ -26,7 +26,8 @@ pub(super) fn explained_by_errors<const D: usize>(
     let known = Some(with_errors.sigma).filter(|_| !with_errors.sigma_estimated);
     let density = |all: Vec<(f64, f64)>| log_density(&all, unknowns, with_errors.sigma, known, width);
     let [bent, straight] = residuals.map(density);
-    let receivers = without.receivers.iter().flatten().count() as f64;
-    let price = (KINDS * receivers).ln() + 0.5 * (count.max(1) as f64).ln();
-    (straight - bent - price * without.receiver_errors.len() as f64).max(0.0)
+    let (receivers, errors) = (without.receivers.iter().flatten().count(), &without.receiver_errors);
+    let is_delay = errors.iter().all(|error| error.kind == ReceiverErrorKind::Delay && error.taken_out);
+    let price = price(errors.len(), is_delay && errors.len() == receivers, receivers, count);
+    (straight - bent - price).max(0.0)
 }

@@ -3,7 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 /// Kinds of errors that a receiver may have.
-pub(crate) const KINDS: f64 = 4.0;
+const KINDS: f64 = 4.0;
+
+/// What so many errors of receivers cost in the logarithm of the likelihood of so many measurements: each the choice of
+/// receiver and kind, and its size as in Schwarz's criterion (1978). Delays of all receivers are no choice, and one of
+/// them follows from the others.
+pub(crate) fn price(errors: usize, are_delays_of_all: bool, receivers: usize, measurements: usize) -> f64 {
+    let of_size = 0.5 * (measurements.max(1) as f64).ln();
+    if are_delays_of_all {
+        of_size * receivers.saturating_sub(1) as f64
+    } else {
+        ((KINDS * receivers.max(1) as f64).ln() + of_size) * errors as f64
+    }
+}
 
 /// The kind of error that a receiver has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
