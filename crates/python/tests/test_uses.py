@@ -1,5 +1,7 @@
 """What people bring: SymPy, pandas, matplotlib, PHCpack; values known from elsewhere."""
 
+import io
+
 import hc
 import numpy as np
 import pytest
@@ -134,8 +136,6 @@ def test_candidates():
 
 
 def test_open_files(tmp_path):
-    import io
-
     made = tdoa.simulate(6, 8, noise=0.01, seed=4)
     text = "\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n"
     (tmp_path / "table.csv").write_text(text)
