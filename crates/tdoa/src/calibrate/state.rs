@@ -93,6 +93,11 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
+    /// The errors taken out whose sizes are unknowns: of delays of all receivers, one follows from the others.
+    pub(crate) fn unknown_errors(&self) -> &[Fault<D>] {
+        if self.has_delays_of_all() { &self.taken[1..] } else { &self.taken }
+    }
+
     /// Whether a delay of every receiver is taken out.
     pub(crate) fn has_delays_of_all(&self) -> bool {
         self.taken.len() == self.measured.receivers()

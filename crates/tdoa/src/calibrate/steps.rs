@@ -66,9 +66,7 @@ fn steps<const D: usize>(
         state.compare_with_one_sided()?;
     }
     let judged = state.judge(input)?;
-    let mut found = state.report(input, &judged)?;
-    state.doubts_choice.into_iter().for_each(|why| found.call_not_unique(why.into()));
-    Ok(found)
+    state.report(input, &judged)
 }
 
 /// Searches networks for measurements less first guesses of the receivers' delays.

@@ -27,7 +27,7 @@ pub(super) fn explained_by_errors<const D: usize>(
     let density = |all: Vec<(f64, f64)>| log_density(&all, unknowns, with_errors.sigma, known, width);
     let [bent, straight] = residuals.map(density);
     let (receivers, errors) = (without.receivers.iter().flatten().count(), &without.receiver_errors);
-    let is_delay = errors.iter().all(|error| error.kind == ReceiverErrorKind::Delay && error.taken_out);
-    let price = price(errors.len(), is_delay && errors.len() == receivers, receivers, count);
+    let are_delays = errors.iter().all(|error| error.kind == ReceiverErrorKind::Delay && error.taken_out);
+    let price = price(errors.len(), are_delays && errors.len() == receivers, receivers, count);
     (straight - bent - price).max(0.0)
 }

@@ -5,6 +5,7 @@
 //! where x - 1.645 s < 0, and distances below 1 / (x + 1.645 s) are ruled out (one-sided, 95 %).
 
 use crate::align::Transform;
+use crate::bordered::Bordered;
 use crate::network::Network;
 use crate::points::{centroid, distance, dot, minus, trace};
 use crate::refine::Covariance;
@@ -41,10 +42,8 @@ pub struct FarTransmitter<const D: usize = 2> {
 impl<const D: usize> FarTransmitter<D> {
     /// The direction in another frame, and the distance in its unit.
     pub(crate) fn transform(&mut self, map: &Transform<D>) {
-        let turned = minus(map.apply(self.direction), map.apply([0.0; D]));
-        let length = dot(turned, turned).sqrt();
-        self.direction = turned.map(|x| x / length);
-        self.least_distance *= length;
+        self.direction = map.turn(self.direction);
+        self.least_distance *= map.scale;
     }
 }
 
@@ -60,8 +59,8 @@ pub(crate) struct Far<const D: usize> {
 /// The far transmitters of a network, of which this is the covariance.
 pub(crate) fn far_transmitters<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>) -> Vec<Far<D>> {
     let (middle, size) = (centroid(network.receivers.iter()), network.size());
-    let far = |(j, (p, covariance)): (usize, (&[f64; D], &Option<_>))| {
-        let covariance: crate::bordered::Bordered<D> = (*covariance)?;
+    let far = |(j, (p, covariance)): (usize, (&[f64; D], &Option<Bordered<D>>))| {
+        let covariance = (*covariance)?;
         let d = distance(*p, middle);
         let direction = minus(*p, middle).map(|x| x / d);
         let along = dot(direction, covariance.rows.map(|row| dot(row, direction))).max(0.0);
@@ -82,7 +81,7 @@ pub(crate) fn within_reach<const D: usize>(network: &Network<D>) -> Option<Netwo
     for p in &mut near.transmitters {
         let d = distance(*p, middle);
         if d > reach {
-            *p = from_fn(|k| middle[k] + (p[k] - middle[k]) * reach / d);
+            *p = scaled(*p, middle, reach / d);
             is_any = true;
         }
     }
@@ -97,10 +96,15 @@ pub(crate) fn drawn_in<const D: usize>(network: &Network<D>, far: &[Far<D>]) -> 
         let p = &mut near.transmitters[*transmitter];
         let d = distance(*p, middle);
         if d > 0.0 {
-            *p = from_fn(|k| middle[k] + (p[k] - middle[k]) * least_distance / d);
+            *p = scaled(*p, middle, least_distance / d);
         }
     }
     near
+}
+
+/// A point so many times as far from a middle.
+fn scaled<const D: usize>(p: [f64; D], middle: [f64; D], factor: f64) -> [f64; D] {
+    from_fn(|k| middle[k] + (p[k] - middle[k]) * factor)
 }
 
 #[cfg(test)]

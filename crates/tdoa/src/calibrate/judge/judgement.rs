@@ -189,6 +189,7 @@ impl<const D: usize> State<'_, D> {
                 && determined
                 && self.contradiction.is_none()
                 && self.left.is_empty()
+                && self.doubts_choice.is_none()
                 && !self.has_two_places(),
             anchors_agree: self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size()),
             one_sided,

@@ -97,7 +97,7 @@ impl<const D: usize> State<'_, D> {
         let (width, of_network) = (before[0].network.size(), whole.unknowns() - unknown.len());
         // What is left out of a receiver that was moved says nothing of its delay.
         let is_used =
-            |o: &Observation| self.observations.of_receiver(o.receiver).any(|p| p.transmitter == o.transmitter);
+            |o: &Observation| self.observations.of_transmitter(o.transmitter).iter().any(|p| p.receiver == o.receiver);
         let density = |observations: &Observations<D>, network: &Network<D>, deviation: f64| {
             let used = observations.all().iter().filter(|o| is_used(o));
             let residuals: Vec<(f64, f64)> = used.map(|o| (o.residual(network), o.precision)).collect();
@@ -109,12 +109,13 @@ impl<const D: usize> State<'_, D> {
         let is_likelier = |(faults, refined, deviation): &Estimated<D>| {
             density(&self.observe(faults), &refined.network, *deviation) - price(faults.len(), true) > some
         };
-        let mut all = Vec::new();
-        for candidate in before.iter().take(CANDIDATES) {
-            all.push(self.estimate(candidate.clone(), self.deviation, unknown.clone())?);
-            if !is_likelier(&all[0]) {
-                return Ok(());
-            }
+        let with_delays = |of: &RefinedNetwork<D>| self.estimate(of.clone(), self.deviation, unknown.clone());
+        let mut all = vec![with_delays(&before[0])?];
+        if !is_likelier(&all[0]) {
+            return Ok(());
+        }
+        for other in before.iter().take(CANDIDATES).skip(1) {
+            all.push(with_delays(other)?);
         }
         self.rank_by_cost(&mut all);
         self.left.clear();

@@ -1,4 +1,4 @@
-//! Which candidates a calibration chosen.
+//! Which candidates a calibration has chosen.
 
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::state::State;

@@ -54,9 +54,7 @@ impl<const D: usize> State<'_, D> {
             return Ok(found);
         }
         let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(found) };
-        // A delay for each receiver but one; that of the last one follows.
-        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { &self.taken[..] };
-        let taken = columns(kept, &projection, free, monitor)?;
+        let taken = columns(kept, &projection, self.unknown_errors(), monitor)?;
         let Some(gram) = gram(&taken, monitor)? else { return Ok(Covariance::default()) };
         // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
         // absorb them, M C M^T is added.

@@ -45,9 +45,7 @@ impl<const D: usize> State<'_, D> {
         }
         let best = &self.ranked[0].network;
         let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(None) };
-        // A delay for each receiver but one; that of the last one follows.
-        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { &self.taken[..] };
-        let taken = columns(kept, &projection, free, monitor)?;
+        let taken = columns(kept, &projection, self.unknown_errors(), monitor)?;
         let found = systematic(kept, best, calibration.redundancy, &projection, &taken, monitor)?;
         let Some(Systematic { deviation, gain, receivers, transmitters }) = found else { return Ok(None) };
         let noise = &calibration.receiver_covariance;

@@ -64,6 +64,7 @@ impl<const D: usize> State<'_, D> {
                 100.0 * (information.mixture.share + information.mixture.gross)
             ));
         }
+        warnings.extend(self.doubts_choice.map(str::to_string));
         warnings
     }
 

@@ -14,7 +14,6 @@ use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::same_network::same;
 use crate::calibrate::search::starts::Search;
 use crate::calibrate::state::State;
-use crate::calibrate::unfinished::Unfinished;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -113,13 +112,8 @@ fn choose_among_all<const D: usize>(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter },
         deviation: None,
     };
-    let found = search.run(&options.search, options.seed, monitor)?;
+    let found = state.run(&search, &part)?;
     let (m, n) = (state.measured.receivers(), state.measured.transmitters());
-    if let Some(best) = found.networks.first() {
-        let best = Unfinished::of(&best.network, found.starts, best.starts);
-        state.so_far = Some(best.among(m, &part.receivers, n, &part.transmitters));
-    }
-    check(monitor)?;
     let networks = found.networks.into_iter().take(NETWORKS);
     let networks = if part.receivers.len() == m && part.transmitters.len() == n {
         networks.collect()

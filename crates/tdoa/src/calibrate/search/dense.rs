@@ -6,7 +6,7 @@ use crate::calibrate::search::deviation::typical_deviation;
 use crate::calibrate::search::hypotheses::{Hypotheses, RandomRestarts};
 use crate::calibrate::search::minimal::MinimalHypotheses;
 use crate::calibrate::search::rivals::add_rivals;
-use crate::calibrate::search::starts::Search;
+use crate::calibrate::search::starts::{Search, SearchOutcome};
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::{Usable, usable};
@@ -57,13 +57,8 @@ pub(crate) fn search_whole<const D: usize>(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
-    let found = search.run(&options.search, options.seed, monitor)?;
+    let found = state.run(&search, &part)?;
     let (m, n) = (state.measured.receivers(), state.measured.transmitters());
-    if let Some(best) = found.networks.first() {
-        let best = Unfinished::of(&best.network, found.starts, best.starts);
-        state.so_far = Some(best.among(m, &part.receivers, n, &part.transmitters));
-    }
-    check(monitor)?;
 
     state.starts = found.starts;
     let best = found.networks[0].objective;
@@ -87,6 +82,20 @@ pub(crate) fn search_whole<const D: usize>(
         state.neighbours = neighbours(&state.observations, &state.ranked[0], found.near, state.deviation, monitor)?;
     }
     Ok(())
+}
+
+impl<const D: usize> State<'_, D> {
+    /// Runs a search among a part of the nodes, and keeps its best network as the one so far.
+    pub(crate) fn run(&mut self, search: &Search<'_, D>, part: &Usable) -> Result<SearchOutcome<D>, CalibrateError<D>> {
+        let found = search.run(&self.options.search, self.options.seed, self.monitor)?;
+        if let Some(best) = found.networks.first() {
+            let (m, n) = (self.measured.receivers(), self.measured.transmitters());
+            let best = Unfinished::of(&best.network, found.starts, best.starts);
+            self.so_far = Some(best.among(m, &part.receivers, n, &part.transmitters));
+        }
+        check(self.monitor)?;
+        Ok(found)
+    }
 }
 
 /// The nodes that the search works on: where there are many, some of the better observed half,
