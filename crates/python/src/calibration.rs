@@ -12,8 +12,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, Unfinished,
-    calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, Node, ReceiverDelays,
+    Unfinished, calibrate_with,
 };
 
 /// Settings as Python gives them.
@@ -25,7 +25,7 @@ pub(crate) struct Settings {
     sigma: Option<f64>,
     /// Of as many coordinates as there are dimensions, three where the measurements decide.
     anchors: Vec<Option<Vec<f64>>>,
-    /// Receiver, coordinates, standard deviation.
+    /// Place among receivers and then transmitters, coordinates, standard deviation.
     positions: Vec<(usize, Vec<Option<f64>>, f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
@@ -43,8 +43,10 @@ impl Settings {
         options.seed = self.seed;
         let exact = self.anchors.into_iter().map(|position| position.map(coordinates).transpose());
         options.anchors = exact.collect::<Result<_, _>>()?;
-        let measured = |(receiver, position, sigma)| {
-            Ok(MeasuredPosition { receiver, position: coordinates(position)?, sigma: [sigma; D] })
+        let receivers = options.anchors.len();
+        let measured = |(node, position, sigma): (usize, _, _)| {
+            let node = node.checked_sub(receivers).map_or(Node::Receiver(node), Node::Transmitter);
+            Ok(MeasuredPosition { node, position: coordinates(position)?, sigma: [sigma; D] })
         };
         options.positions = self.positions.into_iter().map(measured).collect::<Result<_, Failure>>()?;
         options.estimate_speed = self.estimate_speed;

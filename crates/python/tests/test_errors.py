@@ -103,7 +103,7 @@ def test_memory_layouts_give_the_same_bits():
         (dict(names=["a", "b"]), "2"),
         (dict(names=["a"] * 8), "a"),
         (dict(names=3), "names must be a list"),
-        (dict(anchors={"r9": (0, 0)}), "no receiver is named r9; they are r1, r2"),
+        (dict(anchors={"r9": (0, 0)}), "no receiver or transmitter is named r9; the receivers are r1, r2.* the transmitters s1"),
         (dict(anchors={"r1": (0,)}), "the anchor r1 must be x and y"),
         (dict(anchors=np.zeros((3, 2))), r"anchors must have shape \(8, 2\)"),
         (dict(receiver_delays="some"), "none, auto or all"),

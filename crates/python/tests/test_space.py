@@ -78,6 +78,17 @@ def test_anchors_in_space():
     assert np.linalg.norm(mixed.receivers - made.receivers, axis=1).max() < 0.05
 
 
+def test_known_places_of_transmitters():
+    made = room()
+    # Two loudspeakers and one microphone that was measured: the frame is that of the room.
+    anchors = {"s3": made.transmitters[2], "s9": made.transmitters[8], "r1": made.receivers[0], "s12": made.transmitters[11]}
+    found = tdoa.calibrate(made.pseudoranges, anchors=anchors, anchor_sigma={"s12": 0.02})
+    assert found.trusted and found.data["anchored"] == [k == 0 for k in range(12)]
+    assert np.linalg.norm(found.receivers - made.receivers, axis=1).max() < 0.05
+    assert np.linalg.norm(found.transmitters[[2, 8]] - made.transmitters[[2, 8]], axis=1).max() < 1e-4
+    assert tdoa.calibrate(made.pseudoranges, anchors=anchors, anchor_sigma={"s12": 0.02, "s3": 0}) == found
+
+
 def test_anchors_of_one_height_do_not_choose_the_plane():
     made = tdoa.simulate(8, 14, noise=0.01, seed=6)
     anchors = np.full((8, 2), np.nan)

@@ -1,4 +1,4 @@
-//! Known positions of receivers: the truth to compare with, and anchors.
+//! Known positions of nodes: the truth to compare with, and anchors.
 
 use cli::input::name;
 use hc::poly::counted;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tdoa::quantity::length;
 use tdoa::read::{Nodes, is_mat, read_mat_nodes, read_mat_transmitters};
-use tdoa::{MeasuredPosition, Pseudoranges};
+use tdoa::{MeasuredPosition, Node, Pseudoranges};
 
 use crate::Failure;
 
@@ -120,8 +120,8 @@ impl<const D: usize> Truth<D> {
     }
 }
 
-/// Known positions: exact ones in the order of the receivers, and those with a standard deviation or without some
-/// coordinate.
+/// Known positions: exact ones in the order of the receivers, and those with a standard deviation, without some
+/// coordinate, or of transmitters.
 type Anchors<const D: usize> = (Positions<D>, Vec<MeasuredPosition<D>>);
 
 /// Refuses known positions of which the plane leaves much out, or that have no third coordinate for space.
@@ -145,7 +145,8 @@ pub(crate) fn fit_dimension<const D: usize>(path: &Path, nodes: &Nodes) -> Resul
 }
 
 /// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard
-/// deviations, 0 for an exact one. A name that no receiver has is more likely a mistake than meant.
+/// deviations, 0 for an exact one. A name that receivers and transmitters have is that of the receiver; one that no
+/// node has is more likely a mistake than meant.
 pub(crate) fn anchors<const D: usize>(
     path: &Path,
     nodes: &Nodes,
@@ -153,26 +154,28 @@ pub(crate) fn anchors<const D: usize>(
 ) -> Result<Anchors<D>, Failure> {
     let receivers = measured.receiver_names();
     if !nodes.is_named() {
-        return Err(Failure::in_file(path, format!("names no receivers; expected lines name,{}", axes::<D>())));
+        return Err(Failure::in_file(path, format!("names no nodes; expected lines name,{}", axes::<D>())));
     }
-    let unknown = nodes.unknown(receivers);
-    if let Some(name) = unknown.iter().find(|name| measured.transmitter_names().iter().any(|other| other == *name)) {
-        return Err(Failure::in_file(
-            path,
-            format!(
-                "{name} is a transmitter; only positions of receivers can be held, leave out those of transmitters"
-            ),
-        ));
-    }
+    let mut unknown = nodes.unknown(receivers);
+    unknown.retain(|name| !measured.transmitter_names().iter().any(|other| other == name));
     if !unknown.is_empty() {
         return Err(Failure::in_file(
             path,
-            format!("no receiver is named {}; they are {}", quoted(&unknown), some(receivers)),
+            format!(
+                "no receiver or transmitter is named {}; the receivers are {}, the transmitters {}",
+                quoted(&unknown),
+                some(receivers),
+                some(measured.transmitter_names())
+            ),
         ));
     }
     let (mut exact, mut deviating) = (vec![None; receivers.len()], Vec::new());
-    for (i, receiver) in receivers.iter().enumerate() {
-        let Some(node) = nodes.named(receiver) else { continue };
+    let of_receivers = receivers.iter().enumerate().map(|(i, name)| (Node::Receiver(i), name));
+    let is_receiver = |name: &String| receivers.contains(name);
+    let of_transmitters = measured.transmitter_names().iter().enumerate().filter(|(_, name)| !is_receiver(name));
+    let all = of_receivers.chain(of_transmitters.map(|(j, name)| (Node::Transmitter(j), name)));
+    for (place, name) in all {
+        let Some(node) = nodes.named(name) else { continue };
         let (mut position, mut sigma) = ([None; D], [0.0; D]);
         position.copy_from_slice(&node.position[..D]);
         // Without standard deviations all positions are exact.
@@ -182,7 +185,7 @@ pub(crate) fn anchors<const D: usize>(
         if position.iter().all(Option::is_none) {
             return Err(Failure::in_file(
                 path,
-                format!("{receiver} has neither x nor y; give one of them, or leave it out"),
+                format!("{name} has neither x nor y; give one of them, or leave it out"),
             ));
         }
         let is_missing = |k: usize| position[k].is_some() && (sigma[k].is_nan() || sigma[k] < 0.0);
@@ -190,18 +193,18 @@ pub(crate) fn anchors<const D: usize>(
             return Err(Failure::in_file(
                 path,
                 format!(
-                    "the standard deviation of {receiver} is missing or negative; give one in metres, 0 for an exact position"
+                    "the standard deviation of {name} is missing or negative; give one in metres, 0 for an exact position"
                 ),
             ));
         }
-        match node.whole().filter(|_| sigma == [0.0; D]) {
-            Some(whole) => exact[i] = Some(whole),
-            None => {
+        match (node.whole().filter(|_| sigma == [0.0; D]), place) {
+            (Some(whole), Node::Receiver(i)) => exact[i] = Some(whole),
+            _ => {
                 for (sigma, position) in sigma.iter_mut().zip(position) {
                     // A coordinate that is not known has no deviation.
                     *sigma = if position.is_some() { *sigma } else { 0.0 };
                 }
-                deviating.push(MeasuredPosition { receiver: i, position, sigma });
+                deviating.push(MeasuredPosition { node: place, position, sigma });
             }
         }
     }

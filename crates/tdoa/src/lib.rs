@@ -89,6 +89,7 @@ pub use cells::Cells;
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;
+pub use observations::Node;
 pub use pseudoranges::{PseudorangeError, Pseudoranges};
 pub use refine::PartialNetwork;
 pub use simulate::{Layout, ReceiverFault, SimulateError, SimulateOptions, Simulation, simulate};

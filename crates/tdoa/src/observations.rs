@@ -25,11 +25,32 @@ impl Observation {
     }
 }
 
-/// A node by its place among those of its kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Node {
+/// A node by its index among those of its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Node {
+    /// The receiver of this index.
     Receiver(usize),
+    /// The transmitter of this index.
     Transmitter(usize),
+}
+
+impl Node {
+    /// The position in a network of that size.
+    #[inline]
+    pub(crate) fn of<const D: usize>(self, network: &Network<D>) -> [f64; D] {
+        match self {
+            Node::Receiver(i) => network.receivers[i],
+            Node::Transmitter(j) => network.transmitters[j],
+        }
+    }
+
+    /// The position, to be changed.
+    pub(crate) fn of_mut<const D: usize>(self, network: &mut Network<D>) -> &mut [f64; D] {
+        match self {
+            Node::Receiver(i) => &mut network.receivers[i],
+            Node::Transmitter(j) => &mut network.transmitters[j],
+        }
+    }
 }
 
 /// A coordinate of a node that was measured by itself, or that is expected to be near a value.
@@ -49,11 +70,7 @@ impl Pin {
     /// Residual, comparable with those of the measurements.
     #[inline]
     pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
-        let position = match self.node {
-            Node::Receiver(i) => network.receivers[i],
-            Node::Transmitter(j) => network.transmitters[j],
-        };
-        (self.value - position[self.axis]) * self.precision
+        (self.value - self.node.of(network)[self.axis]) * self.precision
     }
 }
 

@@ -50,6 +50,67 @@ fn anchors_fix_the_frame() {
 }
 
 #[test]
+fn known_transmitters_fix_the_frame() {
+    let (directory, file, truth) = recording();
+    let transmitters = tdoa::read::read_nodes(&directory.path().join("transmitters.csv")).expect("positions");
+    let transmitters: Vec<[f64; 2]> = transmitters.positions().into_iter().flatten().collect();
+    let path = directory.path().join("known.csv");
+    let line = |name: &str, p: [f64; 2], sigma: f64| format!("{name},{},{},{sigma}\n", p[0], p[1]);
+    // Three surveyed tags, one of them to 2 cm, and no receiver.
+    let exact = [0, 4].map(|j| line(&format!("s{}", j + 1), transmitters[j], 0.0)).concat();
+    std::fs::write(&path, format!("name,x,y,sigma\n{exact}{}", line("s9", transmitters[8], 0.02))).expect("written");
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&path)]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    assert!(worst(&found, &truth) < 0.1, "{}", worst(&found, &truth));
+    for j in [0, 4] {
+        let off = |k: usize| (found["transmitters"][j][k].as_f64().expect("coordinate") - transmitters[j][k]).abs();
+        assert!(off(0) < 1e-4 && off(1) < 1e-4, "s{}: {} {}", j + 1, off(0), off(1));
+    }
+    assert!(found["gauge"].as_str().expect("text").contains("known positions"));
+    // One of them a metre off among six is named.
+    let mut lines: String = (0..6).map(|j| line(&format!("s{}", j + 1), transmitters[j], 0.0)).collect();
+    lines += &line("s8", transmitters[7].map(|x| x + 1.0), 0.0);
+    std::fs::write(&path, format!("name,x,y,sigma\n{lines}")).expect("written");
+    let (found, message, _) = calibrate(&[text(&file), "--anchors", text(&path)]);
+    let warnings = found.expect("JSON")["warnings"].to_string();
+    assert!(
+        warnings.contains("the known position of s8 is") && warnings.contains("was not used"),
+        "{message} {warnings}"
+    );
+}
+
+#[test]
+fn one_anchor_leaves_the_turn_open() {
+    let (directory, file, truth) = recording();
+    let known = anchors(directory.path(), &truth, &[3]);
+    let (found, message, _) = calibrate(&[text(&file), "--anchors", text(&known)]);
+    let found = found.expect("JSON");
+    let at = |k: usize| found["receivers"][3][k].as_f64().expect("coordinate");
+    assert!((at(0) - truth[3][0]).hypot(at(1) - truth[3][1]) < 1e-9, "{message}");
+    assert!(found["warnings"].to_string().contains("free to turn about the only place"), "{}", found["warnings"]);
+}
+
+#[test]
+fn the_speed_follows_from_measured_anchors() {
+    let (directory, file, truth) = recording();
+    let table = std::fs::read_to_string(&file).expect("table");
+    let shorter = |cell: &str| cell.parse::<f64>().map_or(cell.to_string(), |f| (f / 1.05).to_string());
+    let line = |line: &str| line.split(',').map(shorter).collect::<Vec<_>>().join(",") + "\n";
+    let wrong = directory.path().join("wrong.csv");
+    std::fs::write(&wrong, table.lines().map(line).collect::<String>()).expect("written");
+    let path = directory.path().join("known.csv");
+    let lines = [1, 4, 6, 8].map(|i: usize| format!("r{},{},{},0.005\n", i + 1, truth[i][0], truth[i][1])).concat();
+    std::fs::write(&path, format!("name,x,y,sigma\n{lines}")).expect("written");
+    let (found, message, status) = calibrate(&[text(&wrong), "--anchors", text(&path), "--estimate-speed"]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    let [factor, std] = ["factor", "factor_std"].map(|field| found["speed"][field].as_f64().expect("number"));
+    assert!((factor - 1.05).abs() < 4.0 * std && std < 0.01, "{factor} +- {std}");
+    assert!(worst(&found, &truth) < 0.1, "{}", worst(&found, &truth));
+}
+
+#[test]
 fn anchors_have_standard_deviations() {
     let (directory, file, truth) = recording();
     let path = directory.path().join("measured.csv");
@@ -155,7 +216,7 @@ fn unusable_knowledge_is_refused() {
     says(&["--estimate-speed"], &["no distance between receivers is known", "two anchors or a distance"]);
     says(&["--estimate-speed", "--anchors", text(&known)], &["two anchors or a distance"]);
     says(&["--anchors", "none.csv"], &["none.csv"]);
-    says(&["--anchors", text(&write("a.csv", "name,x,y\nr77,1,2\n"))], &["a.csv", "\"r77\"", "r1, r2, r3"]);
+    says(&["--anchors", text(&write("a.csv", "name,x,y\nr77,1,2\n"))], &["a.csv", "\"r77\"", "r1, r2, r3", "s1, s2"]);
     says(&["--anchors", text(&write("b.csv", "name,x,y\nr1,1,2\nr1,1,2\n"))], &["r1 is there twice"]);
     says(&["--anchors", text(&write("c.csv", "1,2\n3,4\n"))], &["name,x,y"]);
     says(&["--anchors", text(&write("d.csv", "name,x,y\nr1,1e300,2\nr2,1,1\n"))], &["r1", "too large"]);

@@ -8,7 +8,9 @@ use rand_pcg::Pcg64Mcg;
 use std::array::from_fn;
 use std::f64::consts::TAU;
 use tdoa::calibrate::{Calibrated, CalibratedError, Calibration, calibrate_either};
-use tdoa::{CalibrateOptions, MeasuredPosition, Monitor, Network, PseudorangeError, Pseudoranges, ReceiverDelays};
+use tdoa::{
+    CalibrateOptions, MeasuredPosition, Monitor, Network, Node, PseudorangeError, Pseudoranges, ReceiverDelays,
+};
 
 /// A calibration is wrong if its receivers are farther from the truth than this share of the network's size, and
 /// this many times farther than least squares that starts at the truth and has no other errors than noise.
@@ -176,8 +178,8 @@ impl Kind {
         options.seed = seed;
         match self {
             Kind::KnownHeights => {
-                let known = |(receiver, p): (usize, &[f64; 3])| MeasuredPosition {
-                    receiver,
+                let known = |(i, p): (usize, &[f64; 3])| MeasuredPosition {
+                    node: Node::Receiver(i),
                     position: [None, None, Some(p[2])],
                     sigma: [0.0, 0.0, 0.02],
                 };

@@ -31,25 +31,37 @@ def _plane_or_space(dimensions):
     raise InputError(f'dimensions must be 2, 3 or "auto", not {dimensions!r}')
 
 
+def _nodes(given):
+    """Names of all nodes: the receivers, then the transmitters."""
+    m, n = np.shape(given["values"])
+    receivers, transmitters = given["receivers"], given["transmitters"]
+    receivers = receivers if receivers is not None else [f"r{i + 1}" for i in range(m)]
+    return [*receivers, *(transmitters if transmitters is not None else [f"s{j + 1}" for j in range(n)])]
+
+
+def _node(name, names, count):
+    """The place of a node among all; a name of both kinds is the receiver's."""
+    if str(name) not in names:
+        kinds = f"the receivers are {', '.join(names[:count][:8])}, the transmitters {', '.join(names[count:][:8])}"
+        raise InputError(f"no receiver or transmitter is named {name}; {kinds}")
+    return names.index(str(name))
+
+
 def _anchors(anchors, names, count):
-    """Known positions in the order of the receivers: x, y and z, NaN where unknown."""
-    rows = np.full((count, 3), np.nan)
+    """Known positions in the order of the nodes: x, y and z, NaN where unknown."""
+    rows = np.full((len(names), 3), np.nan)
     if anchors is None:
         return rows
     if hasattr(anchors, "keys"):
-        names = names if names is not None else [f"r{i + 1}" for i in range(count)]
-        unknown = [str(name) for name in anchors.keys() if str(name) not in names]
-        if unknown:
-            raise InputError(f"no receiver is named {', '.join(unknown[:8])}; they are {', '.join(names[:8])}")
         for name in anchors.keys():
             position = _position(name, anchors[name])
-            rows[names.index(str(name)), : len(position)] = position
+            rows[_node(name, names, count), : len(position)] = position
     else:
         given = real_matrix("anchors", anchors)
         if given.shape not in ((count, 2), (count, 3)):
             shapes = f"({count}, 2) or, in space, ({count}, 3)"
             raise InputError(f"anchors must have shape {shapes}, NaN where unknown, or be a dict by name, not {given.shape}")
-        rows[:, : given.shape[1]] = given
+        rows[:count, : given.shape[1]] = given
     return rows
 
 
@@ -75,19 +87,16 @@ def _dimensions(dimensions, rows):
     return 2
 
 
-def _known(rows, sigma, names, anchored):
-    """Exact positions in the order of the receivers, and measured ones: receiver, coordinates, standard deviation."""
-    count = len(rows)
-    sigmas = np.zeros(count)
+def _known(rows, sigma, names, count, anchored):
+    """Exact positions in the order of the receivers, and others: node, coordinates, standard deviation."""
+    sigmas = np.zeros(len(rows))
     if hasattr(sigma, "keys"):
-        names = names if names is not None else [f"r{i + 1}" for i in range(count)]
         for name in sigma.keys():
-            if str(name) not in names:
-                raise InputError(f"no receiver is named {name}; they are {', '.join(names[:8])}")
-            sigmas[names.index(str(name))] = number("anchor_sigma", sigma[name])
+            sigmas[_node(name, names, count)] = number("anchor_sigma", sigma[name])
     elif sigma is not None:
         try:
-            sigmas[:] = np.asarray(sigma, dtype=float)
+            numbers = np.asarray(sigma, dtype=float)
+            sigmas[: None if numbers.ndim == 0 else count] = numbers
         except (TypeError, ValueError):
             raise InputError(f"anchor_sigma must be a number, {count} numbers, or a dict by name, not {sigma!r}") from None
     if not anchored:
@@ -97,7 +106,7 @@ def _known(rows, sigma, names, anchored):
     exact, measured = [None] * count, []
     for i, (row, sigma) in enumerate(zip(rows, sigmas)):
         position = [None if np.isnan(value) else float(value) for value in row]
-        if sigma == 0 and None not in position:
+        if sigma == 0 and None not in position and i < count:
             exact[i] = position
         elif any(value is not None for value in position):
             measured.append((i, position, float(sigma)))
@@ -149,11 +158,12 @@ def calibrate(
         Whether the network is sought in the plane (d = 2) or in space (d = 3). "auto": in space where anchors have different
         heights, otherwise as the measurements have it, and `dimension_test` of the result says how clearly.
     anchors : array_like of shape (m, 2) or (m, 3), or dict of name to (x, y) or (x, y, z), optional
-        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more, in space three or more,
-        are held there. Some coordinates may be NaN, beside two (three) receivers with all. In the plane z is left out; heights
-        that differ by more than a tenth of the extent are refused.
+        Known positions of some receivers in metres, NaN where unknown; by name of transmitters too. They fix the frame, and two
+        or more, in space three or more, are held there. Some coordinates may be NaN, beside two (three) nodes with all. In the
+        plane z is left out; heights that differ by more than a tenth of the extent are refused.
     anchor_sigma : float, array_like of shape (m,), or dict of name to float, optional
-        Standard deviations of the anchors in metres, which are then measurements; 0, the default, for exact ones.
+        Standard deviations of the anchors in metres, which are then measurements; 0, the default, for exact ones. An array is of
+        receivers.
     names : list of str, or (list of str, list of str), or dict with receivers and transmitters, optional
         Names of the receivers, and of the transmitters. A DataFrame has its own.
     seed : int
@@ -208,9 +218,10 @@ def calibrate(
     """
     given, single, factor = table(pseudoranges, names, sigma, speed)
     receivers, count = given["receivers"], len(given["values"])
-    rows = _anchors(anchors, receivers, count)
+    nodes = _nodes(given)
+    rows = _anchors(anchors, nodes, count)
     d = _dimensions(dimensions, rows)
-    exact, measured = _known(rows[:, : d or 3], anchor_sigma, receivers, anchors is not None)
+    exact, measured = _known(rows[:, : d or 3], anchor_sigma, nodes, count, anchors is not None)
     settings = {
         "dimensions": d,
         "sigma": single,

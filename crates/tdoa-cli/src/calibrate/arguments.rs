@@ -37,9 +37,9 @@ pub(crate) struct Arguments {
     /// propagation speed is then wrong by that factor).
     #[arg(long)]
     pub(super) scale: bool,
-    /// Known positions of some receivers (columns name, x, y and, in space, z in any order, metres):
-    /// they fix the frame, and two or more (three) are held there, which sharpens the rest. With a
-    /// column sigma (or std_x and std_y, std_z) they are measurements with that standard deviation,
+    /// Known positions of some receivers and transmitters (columns name, x, y and, in space, z in any
+    /// order, metres): they fix the frame, and two or more (three) are held there, which sharpens the rest.
+    /// With a column sigma (or std_x and std_y, std_z) they are measurements with that standard deviation,
     /// exact where it is 0; coordinates may be empty.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     pub(super) anchors: Option<PathBuf>,

@@ -13,7 +13,7 @@ mod steps;
 mod unfinished;
 
 pub use entry::{Calibrates, Dimension, calibrate, calibrate_with};
-pub use input::anchors::SpeedEstimate;
+pub use input::speed::SpeedEstimate;
 pub use judge::dimension_test::{DimensionTest, PlaneDistances};
 pub use judge::dimensions::{Calibrated, CalibratedError, calibrate_either};
 pub use judge::far_transmitters::FarTransmitter;

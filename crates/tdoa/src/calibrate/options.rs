@@ -2,6 +2,7 @@
 
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
+use crate::observations::Node;
 use crate::refine::Cancelled;
 use hc::Monitor;
 use hc::poly::counted;
@@ -105,8 +106,8 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// last refinement. Default empty: none are known.
     pub anchors: Vec<Option<[f64; D]>>,
     /// Positions of receivers that were measured by other means, with an error or in only one
-    /// coordinate. Two or more receivers must have both coordinates, here or among the anchors.
-    /// Default empty.
+    /// coordinate, and positions of transmitters. All coordinates of two nodes or more must be known, in space of
+    /// three that are not in one line, here or among the anchors. Default empty.
     pub positions: Vec<MeasuredPosition<D>>,
     /// How to treat receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.
@@ -131,14 +132,14 @@ pub struct KnownDistance {
     pub distance: f64,
 }
 
-/// A position of a receiver that was measured by other means.
+/// A position of a receiver or transmitter that was measured by other means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPosition<const D: usize = 2> {
-    /// Index of the receiver.
-    pub receiver: usize,
-    /// x and y in metres, `None` if unknown.
+    /// The receiver or transmitter.
+    pub node: Node,
+    /// x and y, in space z, in metres, `None` if unknown.
     pub position: [Option<f64>; D],
-    /// Standard deviations of x and y, metres; both zero if they are exact.
+    /// Standard deviations of the coordinates, metres; all zero if they are exact.
     pub sigma: [f64; D],
 }
 

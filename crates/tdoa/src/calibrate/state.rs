@@ -1,6 +1,7 @@
 //! A calibration on its way from one step to the next.
 
-use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
+use crate::calibrate::input::anchors::Anchors;
+use crate::calibrate::input::speed::SpeedEstimate;
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::neighbours::Neighbour;
 use crate::calibrate::options::CalibrateOptions;

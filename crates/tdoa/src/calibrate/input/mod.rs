@@ -4,3 +4,4 @@ pub(crate) mod anchors;
 pub(crate) mod impossible;
 pub(crate) mod middle_delays;
 pub(crate) mod selection;
+pub(crate) mod speed;

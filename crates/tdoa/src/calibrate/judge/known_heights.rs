@@ -1,6 +1,7 @@
 //! What known positions say of the third coordinate.
 
 use crate::calibrate::options::{CalibrateOptions, MeasuredPosition};
+use crate::observations::Node;
 
 /// What is known of heights.
 #[derive(Clone, Copy, PartialEq)]
@@ -30,15 +31,15 @@ pub(super) fn in_plane(options: &CalibrateOptions<3>, receivers: usize) -> Calib
     let mut positions = Vec::new();
     for known in &options.positions {
         let ([x, y, _], [of_x, of_y, _]) = (known.position, known.sigma);
-        let flat = MeasuredPosition { receiver: known.receiver, position: [x, y], sigma: [of_x, of_y] };
-        match flat.whole().filter(|_| flat.sigma == [0.0; 2] && known.receiver < receivers) {
+        let flat = MeasuredPosition { node: known.node, position: [x, y], sigma: [of_x, of_y] };
+        match (flat.whole().filter(|_| flat.sigma == [0.0; 2]), known.node) {
             // Exact but for the height.
-            Some(exact) => {
+            (Some(exact), Node::Receiver(i)) if i < receivers => {
                 anchors.resize(receivers.max(anchors.len()), None);
-                anchors[known.receiver] = Some(exact);
+                anchors[i] = Some(exact);
             }
-            None if flat.position == [None; 2] => {}
-            None => positions.push(flat),
+            _ if flat.position == [None; 2] => {}
+            _ => positions.push(flat),
         }
     }
     CalibrateOptions {

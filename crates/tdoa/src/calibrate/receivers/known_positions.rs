@@ -1,7 +1,8 @@
 //! The last refinement with prior knowledge: first the propagation speed from known distances, then
-//! with receivers held at their known positions.
+//! with nodes held at their known positions.
 
 use crate::calibrate::input::anchors::Anchors;
+use crate::calibrate::input::speed::speed;
 use crate::calibrate::options::CalibrateError;
 use crate::calibrate::search::deviation::median_size;
 use crate::calibrate::search::one_sided::noise;
@@ -9,12 +10,12 @@ use crate::calibrate::state::State;
 use crate::degeneracy::Usable;
 use crate::flatness::Plane;
 use crate::network::Network;
-use crate::observations::{Node, Observations, Pin};
+use crate::observations::{Node, Observation, Observations, Pin};
 use crate::quantity::length;
 use crate::refine::covariance;
 
 impl<const D: usize> State<'_, D> {
-    /// Estimates the propagation speed, then refines with the receivers of known position in their places.
+    /// Estimates the propagation speed, then refines with the nodes of known position in their places.
     pub(crate) fn hold(&mut self, usable: &Usable) -> Result<(), CalibrateError<D>> {
         let State { options, monitor, known, deviation, .. } = *self;
         let mut anchors = Anchors::new(usable, options)?;
@@ -31,31 +32,41 @@ impl<const D: usize> State<'_, D> {
         let sure = known.is_some() || kept.len() > kept.unknowns();
         let uncertainty = covariance(&kept, best, sigma, monitor)?.filter(|_| sure);
         let joint = uncertainty.as_ref().map(|all| all.joint.as_slice());
-        let speed = options
-            .estimate_speed
-            .then(|| crate::calibrate::input::anchors::speed(best, usable, joint, options))
-            .transpose()?;
-        let metre = speed.map_or(1.0, |speed| speed.factor);
+        let estimate = options.estimate_speed.then(|| speed(best, usable, joint, options)).transpose()?;
+        let metre = estimate.map_or(1.0, |speed| speed.factor);
         if let Some(anchors) = &mut anchors {
             anchors.divide(metre);
-            let expected = uncertainty.as_ref().map(|all| anchors.expected(&all.receivers));
-            if let Some((i, off)) = expected.and_then(|expected| anchors.culprit(best, 4.0 * expected)) {
-                anchors.release(i);
+            let expected = uncertainty.as_ref().map(|all| anchors.expected(all));
+            if let Some((node, off)) = expected.and_then(|expected| anchors.culprit(best, 4.0 * expected)) {
+                anchors.release(node);
+                let name = match node {
+                    Node::Receiver(i) => &measured.receiver_names()[i],
+                    Node::Transmitter(j) => &measured.transmitter_names()[j],
+                };
                 warnings.push(format!(
-                    "the known position of {} is {} from where the measurements and the other known positions put it, and was not used; \
+                    "the known position of {name} is {} from where the measurements and the other known positions put it, and was not used; \
                      check the position and the name",
-                    measured.receiver_names()[i],
                     length(metre * off)
                 ));
             }
         }
-        self.speed = speed;
+        self.speed = estimate;
         self.anchors = anchors;
-        let Some(places) = self.anchors.as_ref().filter(|anchors| anchors.fix()) else { return Ok(()) };
+        let Some(anchors) = &self.anchors else { return Ok(()) };
+        if let Some(turn) = anchors.free_turn() {
+            warnings.push(format!(
+                "the known positions leave the network free to turn about {turn}: its turn is arbitrary, and the deviations are those of its \
+                 shape; give {} known positions{}",
+                if D == 2 { "two" } else { "three" },
+                if D == 2 { "" } else { " that are not in one line" }
+            ));
+            return Ok(());
+        }
+        let places = anchors;
         let misfit: Vec<f64> = ranked.iter_mut().map(|refined| places.place(refined)).collect();
-        let expected = uncertainty.as_ref().map(|all| places.expected(&all.receivers));
+        let expected = uncertainty.as_ref().map(|all| places.expected(all));
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
-            let count = places.count();
+            let count = places.whole.len();
             // As many as fix a frame and its side can contradict, one more can tell.
             let few = match (count, D) {
                 (3, 2) => " (one of the three may be wrong; which one can be told with a fourth)",
@@ -64,7 +75,7 @@ impl<const D: usize> State<'_, D> {
                 _ => " (more than one, or names exchanged)",
             };
             warnings.push(format!(
-                "the known positions contradict the distances that the measurements give between these receivers: they are {} (root mean \
+                "the known positions contradict the distances that the measurements give between these nodes: they are {} (root mean \
                  square) from where the measurements put them, which would be expected to {}{few}; check the positions and names, and the \
                  propagation speed (--estimate-speed)",
                 length(metre * misfit[0]),
@@ -87,19 +98,28 @@ impl<const D: usize> State<'_, D> {
     }
 }
 
-/// Puts receivers of which coordinates are known on the side of the plane of their transmitters where these
+/// Puts nodes of which coordinates are known on the side of the plane of those they were measured with where these
 /// coordinates have them. A refinement does not carry them through that plane.
 fn put_on_known_sides<const D: usize>(observations: &Observations<D>, network: &mut Network<D>) {
-    for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
-        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.node == Node::Receiver(i)).collect();
-        let others: Vec<[f64; D]> = observations.of_receiver(i).map(|o| network.transmitters[o.transmitter]).collect();
-        let Some(plane) = Plane::through(&others).filter(|_| !pins.is_empty()) else { continue };
+    let receivers = (0..observations.receivers).filter(|&i| !observations.held()[i]).map(Node::Receiver);
+    for node in receivers.chain((0..observations.transmitters).map(Node::Transmitter)) {
+        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.node == node).collect();
+        if pins.is_empty() {
+            continue;
+        }
+        let (cells, others): (Vec<Observation>, Vec<[f64; D]>) = match node {
+            Node::Receiver(i) => observations.of_receiver(i).map(|o| (*o, network.transmitters[o.transmitter])).unzip(),
+            Node::Transmitter(j) => {
+                observations.of_transmitter(j).iter().map(|o| (*o, network.receivers[o.receiver])).unzip()
+            }
+        };
+        let Some(plane) = Plane::through(&others) else { continue };
         let misfit = |network: &Network<D>| {
             let known = pins.iter().map(|pin| pin.residual(network).powi(2));
-            known.chain(observations.of_receiver(i).map(|o| o.residual(network).powi(2))).sum::<f64>()
+            known.chain(cells.iter().map(|o| o.residual(network).powi(2))).sum::<f64>()
         };
         let mut other = network.clone();
-        other.receivers[i] = plane.mirrored(network.receivers[i]);
+        *node.of_mut(&mut other) = plane.mirrored(node.of(network));
         if misfit(&other) < misfit(network) {
             *network = other;
         }
@@ -109,7 +129,7 @@ fn put_on_known_sides<const D: usize>(observations: &Observations<D>, network: &
 #[cfg(test)]
 mod tests {
     use crate::{
-        CalibrateOptions, Calibration, KnownDistance, MeasuredPosition, SimulateOptions, Simulation, calibrate,
+        CalibrateOptions, Calibration, KnownDistance, MeasuredPosition, Node, SimulateOptions, Simulation, calibrate,
         simulate,
     };
     use rand::{RngExt, SeedableRng};
@@ -272,7 +292,7 @@ mod tests {
             let mut position = |receiver: usize, sigma: f64| {
                 let [x, y] = truth[receiver].map(|x| Some(noisy(x, sigma)));
                 MeasuredPosition {
-                    receiver,
+                    node: Node::Receiver(receiver),
                     position: if receiver == 5 { [x, None] } else { [x, y] },
                     sigma: [sigma; 2],
                 }
@@ -300,10 +320,10 @@ mod tests {
     #[test]
     fn positions_that_make_no_frame_are_refused() {
         let simulation = simulation(5);
-        let known = |receiver, position, sigma| MeasuredPosition { receiver, position, sigma: [sigma; 2] };
+        let known = |i, position, sigma| MeasuredPosition { node: Node::Receiver(i), position, sigma: [sigma; 2] };
         let both = known(0, [Some(0.0), Some(0.0)], 0.1);
         for (positions, part) in [
-            (vec![both, known(1, [Some(1.0), None], 0.1)], "both coordinates of two receivers"),
+            (vec![both, known(1, [Some(1.0), None], 0.1)], "both coordinates of two nodes"),
             (vec![both, known(0, [Some(1.0), Some(2.0)], 0.1)], "is there twice"),
             (vec![both, known(99, [Some(1.0), Some(2.0)], 0.1)], "receiver 100 of 9"),
             (vec![both, known(1, [Some(1.0), Some(2.0)], -0.1)], "must not be negative"),

@@ -2,7 +2,8 @@
 //! it.
 
 use crate::align::{Alignment, Transform, align, spanned};
-use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
+use crate::calibrate::input::anchors::Anchors;
+use crate::calibrate::input::speed::SpeedEstimate;
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::far_transmitters::FarTransmitter;
 use crate::calibrate::judge::mirror_images::MirrorImage;
@@ -12,6 +13,8 @@ use crate::calibrate::report::candidates::ChosenCandidate;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;
+use crate::degeneracy::Usable;
+use crate::observations::Node;
 use crate::points::{distance, minus};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
@@ -341,8 +344,12 @@ impl<const D: usize> Calibration<D> {
 
     /// Moves the result to where the anchors are: held ones are about their centroid so far, those that
     /// fix no frame are anywhere.
-    pub(crate) fn put_on(&mut self, anchors: &Anchors<D>, rows: &[usize], held: bool) {
-        let known = anchors.positions.iter().enumerate().filter_map(|(a, p)| Some((self.receivers[rows[a]]?, (*p)?)));
+    pub(crate) fn put_on(&mut self, anchors: &Anchors<D>, usable: &Usable, held: bool) {
+        let place = |node: Node| match node {
+            Node::Receiver(a) => self.receivers[usable.receivers[a]],
+            Node::Transmitter(b) => self.transmitters[usable.transmitters[b]],
+        };
+        let known = anchors.whole.iter().filter_map(|&(node, p)| Some((place(node)?, p)));
         let (found, known): (Vec<_>, Vec<_>) = known.unzip();
         let aligned = align(&found, &known, false).filter(|_| !held && spanned(&known) > 0);
         let map = match aligned {

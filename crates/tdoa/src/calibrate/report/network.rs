@@ -114,7 +114,7 @@ impl<const D: usize> State<'_, D> {
             calibration.rescale(speed.factor);
         }
         if let Some(anchors) = &self.anchors {
-            calibration.put_on(anchors, rows, is_held);
+            calibration.put_on(anchors, &input.usable, is_held);
         }
         Ok(calibration)
     }
