@@ -94,6 +94,13 @@ impl<const D: usize> Bordered<D> {
         self.corner += factor * last * end;
     }
 
+    /// Adds another matrix.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.rows.iter_mut().flatten().zip(other.rows.iter().flatten()).for_each(|(sum, x)| *sum += x);
+        self.border.iter_mut().zip(other.border).for_each(|(sum, x)| *sum += x);
+        self.corner += other.corner;
+    }
+
     /// The determinant of a triangular matrix.
     pub(crate) fn determinant(&self) -> f64 {
         (0..D).map(|k| self.rows[k][k]).product::<f64>() * self.corner

@@ -323,6 +323,16 @@ mod tests {
     }
 
     #[test]
+    fn heights_of_two_levels_are_not_lost() {
+        // In one network of four another one is likelier, which is said.
+        let found: Vec<Outcome> = (0..4).map(|seed| outcome(&Kind::TwoHeights.network(seed).unwrap())).collect();
+        assert!(found.iter().all(|found| found.dimensions == 3 && !found.unique), "{found:?}");
+        let right = found.iter().filter(|found| found.error.unwrap() < 1.1 * found.oracle.unwrap());
+        let (held, all) = right.clone().fold((0, 0), |(a, b), found| (a + found.covered.0, b + found.covered.1));
+        assert!(right.count() >= 3 && 10 * held >= 9 * all, "{found:?}");
+    }
+
+    #[test]
     fn an_outcome_counts_what_is_wrong() {
         let found = Outcome { dimensions: 2, size: 5.0, error: Some(0.2), oracle: Some(0.03), ..Outcome::default() };
         assert!(found.is_wrong());

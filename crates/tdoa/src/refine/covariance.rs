@@ -59,8 +59,9 @@ pub(super) struct Reduced<'a, const D: usize> {
     refiner: NetworkRefiner<'a, D>,
     /// The inverse for all coordinates of the receivers, Dm x Dm.
     inverse: Mat<f64>,
-    /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue.
+    /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue, and these.
     modes: Mat<f64>,
+    values: Vec<f64>,
     /// Indices of the free coordinates.
     free: Vec<usize>,
     /// Eigenvalues that count as zero, and those of them that are rigid motions.
@@ -120,7 +121,7 @@ pub(super) fn reduced<'a, const D: usize>(
             free.iter().zip(column).for_each(|(&a, x)| inverse[(a, to)] = *x);
         }
     }
-    Ok(Some(Reduced { refiner, inverse, modes, free, zero, rigid }))
+    Ok(Some(Reduced { refiner, inverse, modes, values, free, zero, rigid }))
 }
 
 impl<const D: usize> Reduced<'_, D> {
@@ -132,6 +133,25 @@ impl<const D: usize> Reduced<'_, D> {
 
     pub(super) fn normal(&self) -> &Normal<D> {
         self.refiner.normal()
+    }
+
+    /// Whether the measurements determine all receivers, up to a rigid motion.
+    pub(super) fn is_whole(&self) -> bool {
+        self.zero == self.rigid && self.zero < self.free.len()
+    }
+
+    /// The modes that are determined, each as long as its standard deviation, by rows of the receivers' coordinates, and
+    /// how many there are.
+    pub(super) fn whitened(&self, sigma: f64) -> (Vec<f64>, usize) {
+        let count = self.free.len() - self.zero;
+        let mut rows = vec![0.0; self.inverse.nrows() * count];
+        for (a, &at) in self.free.iter().enumerate() {
+            for k in 0..count {
+                let mode = self.zero + k;
+                rows[at * count + k] = self.modes[(a, mode)] * sigma / self.values[mode].sqrt();
+            }
+        }
+        (rows, count)
     }
 }
 
@@ -173,16 +193,7 @@ pub(crate) fn covariance<const D: usize>(
                     sum.add_product(between, a, b);
                 }
             }
-            for y in 0..D {
-                let mut unit = [0.0; D];
-                unit[y] = sigma * sigma;
-                let (column, last) = factor.invert((unit, 0.0));
-                for x in 0..D {
-                    sum.rows[x][y] += column[x];
-                }
-                sum.border[y] += last;
-            }
-            sum.corner += factor.invert(([0.0; D], sigma * sigma)).1;
+            sum.add(&own_covariance(factor, sigma));
             sum
         }));
     }
@@ -192,6 +203,21 @@ pub(crate) fn covariance<const D: usize>(
         loose_beside_held::<D>(&modes.as_ref(), zero, free)
     };
     Ok(Some(Covariance { receivers, joint, transmitters, loose }))
+}
+
+/// The covariance of a transmitter between receivers that are known, from the inverse of the Cholesky factor of its own
+/// normal equations.
+pub(super) fn own_covariance<const D: usize>(factor: &Bordered<D>, sigma: f64) -> Bordered<D> {
+    let mut own = Bordered::ZERO;
+    for y in 0..D {
+        let mut unit = [0.0; D];
+        unit[y] = sigma * sigma;
+        let (column, last) = factor.invert((unit, 0.0));
+        (0..D).for_each(|x| own.rows[x][y] = column[x]);
+        own.border[y] = last;
+    }
+    own.corner = factor.invert(([0.0; D], sigma * sigma)).1;
+    own
 }
 
 /// Receivers that take part in the zero modes beyond the rigid motions.

@@ -36,6 +36,12 @@ const NONE: f64 = 1e-7;
 /// The largest deviation of heights, as a multiple of the smallest, before anything is measured.
 const RANGE: f64 = 1000.0;
 
+/// Logarithm of the ratio of marginal likelihoods beyond which a deviation of heights is left out.
+const UNLIKELY: f64 = 6.0;
+
+/// Most times that the likeliest deviation of heights is doubled.
+const DOUBLINGS: i32 = 20;
+
 /// Most rounds of telling gross errors from good measurements.
 const SORTINGS: usize = 12;
 
@@ -178,6 +184,34 @@ impl<const D: usize> Heights<D> {
             let density = errors.log_density(kept.len(), placed.transmitters, squares, deviation);
             return Ok(Some(density + prior - 0.5 * determinant));
         }
+    }
+
+    /// The root mean square of the deviations of the receivers' heights that the measurements leave likely, before which
+    /// its logarithm was anywhere: that of few receivers may be much larger than the likeliest one.
+    pub(crate) fn likely_receivers(
+        &self,
+        observations: &Observations<D>,
+        known: Option<f64>,
+        width: f64,
+        monitor: &Monitor,
+    ) -> Result<f64, Cancelled> {
+        let (mut best, mut weights, mut squares) = (f64::NEG_INFINITY, 0.0, 0.0);
+        for step in -1..DOUBLINGS {
+            let receivers = self.receivers * 2f64.powi(step);
+            let tried = Heights { receivers, ..self.clone() };
+            let Some(evidence) = tried.evidence(observations, known, width, monitor)? else { break };
+            if receivers > width || evidence < best - UNLIKELY {
+                break;
+            }
+            if evidence > best {
+                (weights, squares) = (weights * (best - evidence).exp(), squares * (best - evidence).exp());
+                best = evidence;
+            }
+            weights += (evidence - best).exp();
+            squares += (evidence - best).exp() * receivers * receivers;
+        }
+        let likely = if weights > 0.0 { (squares / weights).sqrt() } else { 0.0 };
+        Ok(likely.max(self.receivers))
     }
 
     /// What not knowing the deviations and the place of the transmitters' plane beforehand costs in the logarithm of the

@@ -6,7 +6,7 @@ use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::state::State;
 use crate::flatness::levelled;
 use crate::network::Network;
-use crate::refine::{Heights, RefinedNetwork, covariance};
+use crate::refine::{Heights, RefinedNetwork};
 
 /// Share of the heights that the measurements tell, above which they need no expectation.
 const TOLD: f64 = 0.95;
@@ -21,11 +21,15 @@ const MODES: usize = 3;
 
 /// Standard deviation of a receiver's place as a share of the network's size, above which the measurements do not
 /// determine the network.
-const LOOSE: f64 = 0.5;
+const LOOSE: f64 = 0.3;
 
 /// Deviation of the heights of the flatter kind of nodes as a share of the receivers' spread, above which no plane is
 /// worth an expectation.
 const NEARLY_FLAT: f64 = 0.25;
+
+/// Logarithm of the ratio of marginal likelihoods up to which two networks are about as likely, for Laplace's
+/// approximation.
+const CLOSE: f64 = 5.0;
 
 /// Heights that a plane and its tilt take up.
 const PLANE: f64 = 3.0;
@@ -39,7 +43,8 @@ impl<const D: usize> State<'_, D> {
             return Ok(());
         }
         let (modes, of_plane) = self.modes()?;
-        let Some((of_heights, heights)) = modes.first() else { return Ok(()) };
+        let Some((_, heights)) = modes.first() else { return Ok(()) };
+        let of_heights = modes.iter().map(|(evidence, _)| *evidence).fold(f64::NEG_INFINITY, f64::max);
         let [change, in_deviations] = heights.change(&self.observations);
         let evidence = Some(of_heights - of_plane).filter(|evidence| evidence.is_finite());
         self.dimension_test = DimensionTest { evidence, change: Some(in_deviations), ..DimensionTest::default() };
@@ -47,12 +52,10 @@ impl<const D: usize> State<'_, D> {
         if heights.told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
             return Ok(());
         }
-        // An expectation that leaves places less certain than none has led to another network.
-        let sigma = known.unwrap_or(heights.deviation);
-        let alone = covariance(&self.observations, &self.ranked[0].network, sigma, self.monitor)?;
-        if alone.is_some_and(|alone| alone.loosest() < heights.loosest) {
-            return Ok(());
-        }
+        // One deviation of the receivers' heights, the likeliest, says more of them than the measurements do.
+        let mut heights = heights.clone();
+        heights.receivers =
+            heights.likely_receivers(&self.observations, known, self.ranked[0].network.size(), self.monitor)?;
         for other in &mut self.ranked[1..] {
             if let Some(motion) = levelled(&other.network) {
                 other.network = motion.apply_network(&other.network);
@@ -97,6 +100,14 @@ impl<const D: usize> State<'_, D> {
             }
         }
         modes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // Of those that are about as likely the one that fits best.
+        let close = modes.partition_point(|(evidence, _)| *evidence >= modes[0].0 - CLOSE);
+        let misfit = |(_, heights): &(f64, Heights<D>)| -> f64 {
+            observations.all().iter().map(|o| o.residual(&heights.network).abs().min(limit).powi(2)).sum()
+        };
+        if let Some(best) = (0..close).min_by(|&a, &b| misfit(&modes[a]).total_cmp(&misfit(&modes[b]))) {
+            modes[..=best].rotate_right(1);
+        }
         Ok((modes, of_plane))
     }
 }

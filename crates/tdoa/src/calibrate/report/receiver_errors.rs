@@ -9,7 +9,7 @@ use crate::calibrate::state::State;
 use crate::degeneracy::list;
 use crate::observations::Observations;
 use crate::quantity::length;
-use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance, gram};
+use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance, gram, sampled_covariance};
 use faer::Mat;
 use faer::prelude::Solve;
 use std::array::from_fn;
@@ -50,8 +50,11 @@ impl<const D: usize> State<'_, D> {
         let monitor = self.monitor;
         let best = &self.ranked[0].network;
         let mut found = covariance(kept, best, sigma, monitor)?.unwrap_or_default();
-        if self.taken.is_empty() && self.left.is_empty() || found.receivers.is_empty() {
+        if found.receivers.is_empty() {
             return Ok(found);
+        }
+        if self.taken.is_empty() && self.left.is_empty() {
+            return Ok(sampled_covariance(kept, best, sigma, self.options.seed, monitor)?.unwrap_or(found));
         }
         let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(found) };
         let taken = columns(kept, &projection, self.unknown_errors(), monitor)?;
