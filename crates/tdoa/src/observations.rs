@@ -44,6 +44,14 @@ impl Node {
         }
     }
 
+    /// The name in the table.
+    pub(crate) fn name(self, measured: &Pseudoranges) -> &str {
+        match self {
+            Node::Receiver(i) => &measured.receiver_names()[i],
+            Node::Transmitter(j) => &measured.transmitter_names()[j],
+        }
+    }
+
     /// The position, to be changed.
     pub(crate) fn of_mut<const D: usize>(self, network: &mut Network<D>) -> &mut [f64; D] {
         match self {

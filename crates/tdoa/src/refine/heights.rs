@@ -186,8 +186,8 @@ impl<const D: usize> Heights<D> {
         }
     }
 
-    /// The root mean square of the deviations of the receivers' heights that the measurements leave likely, before which
-    /// its logarithm was anywhere: that of few receivers may be much larger than the likeliest one.
+    /// The root mean square of the deviations of the receivers' heights, metres, each weighted by its marginal likelihood,
+    /// on a logarithmic scale. Of few receivers it may be much larger than the likeliest deviation.
     pub(crate) fn likely_receivers(
         &self,
         observations: &Observations<D>,

@@ -43,25 +43,21 @@ pub(crate) fn validate<const D: usize>(
         ));
     }
     let name = |i: usize| &measured.receiver_names()[i];
-    let transmitters = measured.transmitter_names();
     for (i, position) in options.anchors.iter().enumerate() {
         if position.is_some_and(|p| p.iter().any(|x| x.is_nan() || x.abs() > MAX_MAGNITUDE)) {
             return bad(format!("the position of {} is not finite or too large; give metres", name(i)));
         }
     }
-    for (k, measured) in options.positions.iter().enumerate() {
-        let MeasuredPosition { node, position, sigma } = *measured;
+    for (k, known) in options.positions.iter().enumerate() {
+        let MeasuredPosition { node, position, sigma } = *known;
         let (what, index, count) = match node {
             Node::Receiver(i) => ("receiver", i, m),
-            Node::Transmitter(j) => ("transmitter", j, transmitters.len()),
+            Node::Transmitter(j) => ("transmitter", j, measured.transmitters()),
         };
         if index >= count || options.positions[..k].iter().any(|other| other.node == node) {
             return bad(format!("a position of {what} {} of {count} makes no sense, or is there twice", index + 1));
         }
-        let name = match node {
-            Node::Receiver(i) => name(i),
-            Node::Transmitter(j) => &transmitters[j],
-        };
+        let name = node.name(measured);
         if node == Node::Receiver(index) && options.anchors.get(index).is_some_and(Option::is_some) {
             return bad(format!("the position of {name} is given both as exact and as measured; give one"));
         }

@@ -39,10 +39,7 @@ impl<const D: usize> State<'_, D> {
             let expected = uncertainty.as_ref().map(|all| anchors.expected(all));
             if let Some((node, off)) = expected.and_then(|expected| anchors.culprit(best, 4.0 * expected)) {
                 anchors.release(node);
-                let name = match node {
-                    Node::Receiver(i) => &measured.receiver_names()[i],
-                    Node::Transmitter(j) => &measured.transmitter_names()[j],
-                };
+                let name = node.name(measured);
                 warnings.push(format!(
                     "the known position of {name} is {} from where the measurements and the other known positions put it, and was not used; \
                      check the position and the name",

@@ -52,7 +52,7 @@ impl<const D: usize> State<'_, D> {
         if heights.told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
             return Ok(());
         }
-        // One deviation of the receivers' heights, the likeliest, says more of them than the measurements do.
+        // Under the likeliest deviation alone the heights of few receivers would be too certain.
         let mut heights = heights.clone();
         heights.receivers =
             heights.likely_receivers(&self.observations, known, self.ranked[0].network.size(), self.monitor)?;
