@@ -27,19 +27,20 @@ fn kind(name: &str) -> Result<Kind, String> {
     Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| format!("`{name}` is none of {}", names()))
 }
 
-const HEADER: &str = "kind,seed,dimensions,trusted,unique,error,oracle,wrong,covered,ellipses";
+const HEADER: &str = "kind,seed,dimensions,trusted,unique,error,oracle,wrong,unlisted,covered,ellipses";
 
 fn row(kind: Kind, seed: u64) -> Result<String, Failure> {
     let found = outcome(&kind.network(seed).map_err(Failure::unusable)?);
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.5e}"));
     Ok(format!(
-        "{},{},{},{},{},{},{},{}",
+        "{},{},{},{},{},{},{},{},{}",
         found.dimensions,
         found.trusted,
         found.unique,
         number(found.error),
         number(found.oracle),
         found.is_wrong(),
+        found.is_unlisted(),
         found.covered.0,
         found.covered.1
     ))
@@ -57,14 +58,14 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let rows = Table::new(common, "trials.csv", HEADER, &keys, ranks).resume(|| (), |(), k| row(all[k].0, all[k].1))?;
     let Some(rows) = rows else { return Ok(()) };
     let mut summary = String::from(
-        "kind,networks,in_the_plane,in_space,trusted,unique,wrong_and_unique,wrong_and_trusted,error_median,oracle_median,\
+        "kind,networks,in_the_plane,in_space,trusted,unique,wrong_and_unique,wrong_and_trusted,unlisted_and_trusted,error_median,oracle_median,\
          error_over_oracle_where_trusted,ellipses_that_hold\n",
     );
     let each = arguments.instances as usize;
     for (g, kind) in kinds.iter().enumerate() {
         let of = |column: &str| rows.numbers(column, g * each..(g + 1) * each);
-        let [dimensions, trusted, unique, error, oracle, wrong] =
-            ["dimensions", "trusted", "unique", "error", "oracle", "wrong"].map(of);
+        let [dimensions, trusted, unique, error, oracle, wrong, unlisted] =
+            ["dimensions", "trusted", "unique", "error", "oracle", "wrong", "unlisted"].map(of);
         let count = |is: &dyn Fn(usize) -> bool| (0..each).filter(|&k| is(k)).count();
         let ratios: Vec<f64> = (0..each).filter(|&k| trusted[k] == 1.0).map(|k| error[k] / oracle[k]).collect();
         let present = |values: &[f64]| values.iter().copied().filter(|x| !x.is_nan()).collect::<Vec<f64>>();
@@ -76,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             }
         }
         summary += &format!(
-            "{},{each},{},{},{},{},{},{},{},{},{},{}\n",
+            "{},{each},{},{},{},{},{},{},{},{},{},{},{}\n",
             kind.name(),
             count(&|k| dimensions[k] == 2.0),
             count(&|k| dimensions[k] == 3.0),
@@ -84,6 +85,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             count(&|k| unique[k] == 1.0),
             count(&|k| unique[k] * wrong[k] == 1.0),
             count(&|k| trusted[k] * wrong[k] == 1.0),
+            count(&|k| trusted[k] * unlisted[k] == 1.0),
             short(median(&present(&error))),
             short(median(&present(&oracle))),
             short(median(&present(&ratios))),

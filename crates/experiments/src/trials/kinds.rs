@@ -241,6 +241,8 @@ pub struct Outcome {
     pub unique: bool,
     /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres.
     pub error: Option<f64>,
+    /// The least such distance of the network and the alternatives that are listed beside it, metres.
+    pub nearest: Option<f64>,
     /// Likewise of least squares that starts at the true receivers and has measurements with noise alone, in the plane
     /// where all nodes lie in one, metres; `None` if it finds no network.
     pub oracle: Option<f64>,
@@ -253,8 +255,17 @@ pub struct Outcome {
 impl Outcome {
     /// Whether the receivers are not where they are said to be.
     pub fn is_wrong(&self) -> bool {
-        let near = self.oracle.map_or(0.0, |oracle| WRONG.1 * oracle).max(WRONG.0 * self.size);
-        self.error.is_some_and(|error| error > near)
+        self.error.is_some_and(|error| error > self.near())
+    }
+
+    /// Whether no alternative that is listed has them where they are either.
+    pub fn is_unlisted(&self) -> bool {
+        self.nearest.is_some_and(|error| error > self.near())
+    }
+
+    /// The largest error of a right network, metres.
+    fn near(&self) -> f64 {
+        self.oracle.map_or(0.0, |oracle| WRONG.1 * oracle).max(WRONG.0 * self.size)
     }
 }
 
@@ -272,25 +283,35 @@ pub fn outcome(instance: &Instance) -> Outcome {
         found.ok().and_then(|found| apart(&found.receivers, &known))
     };
     match calibrate_either(measured, options, &Monitor::default()) {
-        Ok(Calibrated::Space(found)) => {
-            outcome.error = apart(&found.receivers, &known);
-            outcome.covered = coverage(&found, found.trusted_covariances()[0], &known);
-            outcome.with(3, &found)
-        }
-        Ok(Calibrated::Plane(found)) => {
-            let lifted: Vec<Option<[f64; 3]>> = found.receivers.iter().map(|p| p.map(|[x, y]| [x, y, 0.0])).collect();
-            outcome.error = apart(&lifted, &known);
-            // As far as the plane tells: the truth seen from above.
-            outcome.covered = coverage(&found, found.trusted_covariances()[0], &above);
-            outcome.with(2, &found)
-        }
+        Ok(Calibrated::Space(found)) => outcome.of(&found, &known, &known),
+        // As far as the plane tells: the truth seen from above.
+        Ok(Calibrated::Plane(found)) => outcome.of(&found, &known, &above),
         Err(CalibratedError::Plane(_) | CalibratedError::Space(_)) => outcome,
     }
 }
 
 impl Outcome {
-    fn with<const D: usize>(self, dimensions: usize, found: &Calibration<D>) -> Outcome {
-        Outcome { dimensions, trusted: found.distrust().is_none(), unique: found.unique, ..self }
+    /// That of a calibration of receivers that are known in space and in as many coordinates as it has.
+    fn of<const D: usize>(
+        self,
+        found: &Calibration<D>,
+        known: &[Option<[f64; 3]>],
+        seen: &[Option<[f64; D]>],
+    ) -> Outcome {
+        let off = |receivers: &[Option<[f64; D]>]| {
+            let raised = |p: &[f64; D]| from_fn(|axis| p.get(axis).copied().unwrap_or(0.0));
+            apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), known)
+        };
+        let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
+        Outcome {
+            dimensions: D,
+            trusted: found.distrust().is_none(),
+            unique: found.unique,
+            error: off(&found.receivers),
+            nearest: all.filter_map(|receivers| off(receivers)).reduce(f64::min),
+            covered: coverage(found, found.trusted_covariances()[0], seen),
+            ..self
+        }
     }
 }
 

@@ -54,9 +54,7 @@ pub(crate) struct Neighbour<const D: usize> {
 pub(crate) fn minima<const D: usize>(best: &Network<D>, same: impl Iterator<Item = Network<D>>) -> Vec<Network<D>> {
     let mut kept = vec![best.clone()];
     for network in same {
-        let limit = ONE_MINIMUM * best.size();
-        let known = |k: &Network<D>| align(&network.receivers, &k.receivers, false).is_none_or(|a| a.rms <= limit);
-        if kept.len() <= MOST && !kept.iter().any(known) {
+        if kept.len() <= MOST && !kept.iter().any(|known| is_one_minimum(&network, known)) {
             kept.push(network);
         }
     }
@@ -76,19 +74,29 @@ pub(crate) fn neighbours<const D: usize>(
         return Ok(Vec::new());
     }
     let (centre, least) = refit(observations, &best.network, deviation, monitor)?;
-    let mut found: Vec<Neighbour<D>> = Vec::new();
+    let mut found = Vec::new();
     for network in near {
         let (network, cost) = refit(observations, &network, deviation, monitor)?;
-        let Some(next) = Neighbour::new(&network, (cost - least).max(0.0), Reason::Found, &centre) else { continue };
-        let limit = ONE_MINIMUM * centre.size();
-        let known = |k: &Neighbour<D>| {
-            align(&next.network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit)
-        };
-        if next.rms() > limit && !found.iter().any(known) {
-            found.push(next);
+        found.extend(Neighbour::new(&network, (cost - least).max(0.0), Reason::Found, &centre));
+    }
+    Ok(each_once(found, &centre))
+}
+
+/// Neighbours that are apart from the best network and from each other, the first of each minimum.
+pub(crate) fn each_once<const D: usize>(all: Vec<Neighbour<D>>, best: &Network<D>) -> Vec<Neighbour<D>> {
+    let mut kept: Vec<Neighbour<D>> = Vec::new();
+    for next in all {
+        let is_known = |known: &Network<D>| is_one_minimum(&next.network, known);
+        if !is_known(best) && !kept.iter().any(|known| is_known(&known.network)) {
+            kept.push(next);
         }
     }
-    Ok(found)
+    kept
+}
+
+/// Whether the receivers of two networks are so near that both are one minimum.
+fn is_one_minimum<const D: usize>(a: &Network<D>, b: &Network<D>) -> bool {
+    align(&a.receivers, &b.receivers, false).is_none_or(|apart| apart.rms <= ONE_MINIMUM * b.size())
 }
 
 impl<const D: usize> Neighbour<D> {

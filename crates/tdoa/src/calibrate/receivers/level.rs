@@ -2,6 +2,7 @@
 //! plane of the nodes.
 
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
+use crate::calibrate::judge::neighbours::{Neighbour, Reason, each_once};
 use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::state::State;
 use crate::flatness::levelled;
@@ -52,6 +53,7 @@ impl<const D: usize> State<'_, D> {
         if heights.told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
             return Ok(());
         }
+        self.neighbours.extend(neighbours_of_the_first(&modes));
         // Under the likeliest deviation alone the heights of few receivers would be too certain.
         let mut heights = heights.clone();
         heights.receivers =
@@ -110,6 +112,16 @@ impl<const D: usize> State<'_, D> {
         }
         Ok((modes, of_plane))
     }
+}
+
+/// The other networks as neighbours of the first.
+fn neighbours_of_the_first<const D: usize>(modes: &[(f64, Heights<D>)]) -> Vec<Neighbour<D>> {
+    let [(of_first, first), others @ ..] = modes else { return Vec::new() };
+    let near = others.iter().filter_map(|(evidence, other)| {
+        let loss = (of_first - evidence).max(0.0);
+        Neighbour::new(&other.network, loss, Reason::Found, &first.network)
+    });
+    each_once(near.collect(), &first.network)
 }
 
 /// The network with all nodes of one kind on one side of the plane of the other, where that is the flatter one: their
