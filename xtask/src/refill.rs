@@ -38,9 +38,12 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
                 break;
             }
         }
-        if passed && family.roots().is_none() {
-            stopped = Stopped::Trace;
-        }
+        // The trace test alone shows no more than that orbits are whole.
+        stopped = match stopped {
+            Stopped::StartSystem => Stopped::Trace,
+            Stopped::NoProgress => Stopped::OrbitsWhole,
+            other => other,
+        };
         ensure!(passed, "{}: the trace test does not confirm {} roots", family.name(), fibre.len());
     }
     Ok(StartFile::new(&fibre, deviation, &stopped.to_string()))

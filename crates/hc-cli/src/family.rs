@@ -2,9 +2,13 @@
 
 use crate::input;
 use cli::Failure;
-use hc::family::StartFile;
+use hc::family::{Multiple, StartFile};
+use hc::poly::counted;
 use hc::{Family, FamilyError, Fibre};
 use std::path::Path;
+
+/// Multiplicities that a summary lists.
+const LISTED: usize = 20;
 
 /// Reads a family in plain text or TOML.
 pub(crate) fn read(path: &Path) -> Result<Family, Failure> {
@@ -20,10 +24,24 @@ pub(crate) fn failure(file: &Path, error: FamilyError) -> Failure {
     }
 }
 
-/// Reads a stored fibre, or a first pair, of a family.
-pub(crate) fn fibre(family: &Family, path: &Path) -> Result<Fibre, Failure> {
+/// Reads a stored fibre, or a first pair, of a family, and the solutions that are multiple for all parameters.
+pub(crate) fn fibre(family: &Family, path: &Path) -> Result<(Fibre, Vec<Multiple>), Failure> {
     let file = StartFile::from_json(&input::text(path)?).map_err(|e| Failure::in_file(path, e))?;
     let fibre = file.fibre().map_err(|e| Failure::in_file(path, e))?;
     family.check(&fibre).map_err(|e| Failure::in_file(path, e))?;
-    Ok(family.folded(fibre))
+    Ok((family.folded(fibre), file.multiple))
+}
+
+/// What a summary says of solutions that are multiple for all parameters; empty if there are none.
+pub(crate) fn besides(multiple: &[Multiple]) -> String {
+    if multiple.is_empty() {
+        return String::new();
+    }
+    let multiplicities: Vec<String> = multiple.iter().take(LISTED).map(|m| m.multiplicity.to_string()).collect();
+    format!(
+        "besides, for all parameters: {} of multiplicity {}{}, to which no path leads\n",
+        counted(multiple.len(), "solution"),
+        multiplicities.join(", "),
+        if multiple.len() > LISTED { ", ..." } else { "" }
+    )
 }

@@ -7,10 +7,17 @@ use cli::{Failure, output};
 use hc::family::Stopped;
 use hc::poly::counted;
 use hc::ranks::Ranks;
-use hc::{FamilyError, MonodromyOptions, Run};
+use hc::{FamilyError, Monodromy, MonodromyOptions, Run};
 use std::path::PathBuf;
 
+/// Sizes that a summary lists.
+const LISTED: usize = 20;
+
 /// Finds all solutions of a family for one generic parameter point, from a single one.
+///
+/// Loops in the parameters join the solutions of an orbit. Other orbits are found by a start system for the same
+/// parameters, where that takes no more paths than the loops. Exit status 1 if other orbits are not excluded: neither
+/// by the start system nor by a stated number of roots.
 ///
 /// Interrupted, it writes the solutions found so far, with "stopped": "interrupted" and exit
 /// status 130.
@@ -24,8 +31,11 @@ pub(crate) struct Arguments {
     /// if not given.
     #[arg(long)]
     seed_pair: Option<PathBuf>,
-    /// Leaves out the trace test; without a known number of roots the result is then no more than
-    /// what was found.
+    /// Stays on the orbit of the first pair: finds the solutions that loops join to it, and no others.
+    #[arg(long)]
+    only_component: bool,
+    /// Leaves out the trace test; if there is no known number of roots, and the start system is too large, the result
+    /// is then no more than what was found.
     #[arg(long)]
     no_trace: bool,
     /// Seed of the loops.
@@ -55,44 +65,82 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {
-        Some(path) => family::fibre(&family, path)?,
+        Some(path) => family::fibre(&family, path)?.0,
         None => family.find_pair(arguments.seed).map_err(|error| match error {
             FamilyError::NoPair => Failure::Undetermined(format!("{error} with --seed-pair")),
             error => Failure::in_file(path, error),
         })?,
     };
-    let options = MonodromyOptions::new().seed(arguments.seed).trace_test(!arguments.no_trace);
+    let options = MonodromyOptions::new()
+        .seed(arguments.seed)
+        .trace_test(!arguments.no_trace)
+        .only_component(arguments.only_component);
     let monitor = watch::interruptible()?;
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
     let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.complete(&family, &start, &options))?;
     // Rank 0 has the fibre.
-    let Some(found) = found.map_err(|error| family::failure(path, error))? else { return Ok(()) };
-    let (count, file) = (found.fibre.len(), found.start_file());
+    let found = found.map_err(|error| match (error, &arguments.seed_pair) {
+        (error @ (FamilyError::FirstSolution { .. } | FamilyError::FirstSingular { .. }), Some(pair)) => {
+            Failure::in_file(pair, error)
+        }
+        (error, _) => family::failure(path, error),
+    });
+    let Some(found) = found? else { return Ok(()) };
+    let file = found.start_file();
     output::text(output, &file.to_json())?;
-    let trace = match (found.trace, file.trace_test) {
+    let name = if family.name().is_empty() { input::name(path) } else { family.name().to_owned() };
+    eprintln!("{name}: {}", summary(&found, file.trace_test));
+    eprint!("{}", family::besides(&found.multiple));
+    if found.stopped == Stopped::Cancelled {
+        return Err(arguments.checkpoint.interrupted());
+    }
+    judged(&found, family.roots().filter(|_| !arguments.only_component))
+}
+
+/// What was found, in a line.
+fn summary(found: &Monodromy, deviation: Option<f64>) -> String {
+    let (count, orbits) = (found.fibre.len(), found.orbits.len());
+    let sizes: Vec<String> = found.orbits.iter().take(LISTED).map(usize::to_string).collect();
+    let more = if orbits > LISTED { ", ..." } else { "" };
+    let of_size = if orbits == 1 { "size" } else { "sizes" };
+    let trace = match (found.trace, deviation) {
         (_, Some(deviation)) => format!(", trace test {deviation:.1e}"),
         (Some(_), None) => ", trace test without a result (paths were lost, or led to other solutions)".to_owned(),
         (None, None) => String::new(),
     };
-    let stopped = &file.stopped;
-    let name = if family.name().is_empty() { input::name(path) } else { family.name().to_owned() };
-    eprintln!(
-        "{name}: {} after {} and {}; stopped: {stopped}{trace}",
+    format!(
+        "{} after {} and {}; at most {} of {of_size} {}{more}; stopped: {}{trace}; other orbits: {}",
         counted(count, "solution"),
         counted(found.loops, "loop"),
-        counted(found.paths, "path")
-    );
-    if found.stopped == Stopped::Cancelled {
-        return Err(arguments.checkpoint.interrupted());
-    }
-    match family.roots() {
-        Some(roots) if roots != count => {
+        counted(found.paths, "path"),
+        counted(orbits, "orbit"),
+        sizes.join(", "),
+        found.stopped,
+        match found.stopped.others() {
+            "start system" => "excluded by a start system",
+            "roots" => "excluded by the number of roots",
+            others => others,
+        }
+    )
+}
+
+/// An error unless it is known that nothing that was asked for is missing.
+fn judged(found: &Monodromy, roots: Option<usize>) -> Result<(), Failure> {
+    let count = found.fibre.len();
+    match (roots, found.stopped) {
+        (Some(roots), _) if roots != count => {
             Err(Failure::Undetermined(format!("{} found, the family states {roots}", counted(count, "solution"))))
         }
-        None if !found.stopped.is_complete() => Err(Failure::Undetermined(
-            "neither a known number of roots nor the trace test shows that these are all".to_string(),
+        (Some(_), _) | (None, Stopped::ComponentWhole) => Ok(()),
+        (None, stopped) if stopped.is_complete() => Ok(()),
+        (None, Stopped::OrbitsWhole) => Err(Failure::Undetermined(
+            "these orbits are whole, but others are not excluded: a start system has too many paths, or has lost some; \
+             state the number of `roots`, if it is known, or ask for this orbit alone (--only-component)"
+                .to_owned(),
         )),
-        _ => Ok(()),
+        (None, _) => Err(Failure::Undetermined(
+            "neither a known number of roots nor the trace test shows that these are all".to_owned(),
+        )),
     }
 }

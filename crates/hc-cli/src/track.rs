@@ -11,7 +11,7 @@ use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{Run, Solutions, SolveOptions};
 use num_complex::Complex64;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -74,6 +74,16 @@ struct Target {
     parameters: Vec<Number>,
 }
 
+/// What the JSON has for a target.
+#[derive(Serialize)]
+struct Tracked<'a> {
+    #[serde(flatten)]
+    found: &'a Solutions,
+    /// The multiplicities of solutions that are multiple for all parameters, where the start file names such: no path
+    /// leads to them.
+    untracked: &'a [usize],
+}
+
 /// Tracks, with the other ranks if there are any; rank 0 alone prints, and writes files.
 pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let is_lead = ranks.is_none_or(Ranks::is_lead);
@@ -86,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let begun = Instant::now();
     let file = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(file)?;
-    let fibre = family::fibre(&family, Recording::needed(&arguments.start, "its fibre")?)?;
+    let (fibre, multiple) = family::fibre(&family, Recording::needed(&arguments.start, "its fibre")?)?;
     let target = Recording::needed(&arguments.target, "targets")?;
     let (targets, single) = targets(target, fibre.parameters.len())?;
     let monitor = watch::interruptible()?;
@@ -112,9 +122,10 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         return Ok(());
     }
     let seed = arguments.seed;
-    let reports: Vec<Report<'_, Solutions>> = solved
-        .iter()
-        .map(|(found, seconds)| Report { variables: &found.variables, seed, seconds: *seconds, found })
+    let untracked: Vec<usize> = multiple.iter().map(|m| m.multiplicity).collect();
+    let found: Vec<Tracked<'_>> = solved.iter().map(|(found, _)| Tracked { found, untracked: &untracked }).collect();
+    let reports: Vec<Report<'_, Tracked<'_>>> = (found.iter().zip(&solved))
+        .map(|(found, (_, seconds))| Report { variables: &found.found.variables, seed, seconds: *seconds, found })
         .collect();
     if let Some(path) = &arguments.json {
         match &reports[..] {
@@ -122,7 +133,9 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             reports => output::json_list(path, reports)?,
         }
     }
-    output::summary(arguments.json.as_deref(), || summary(&solved, begun.elapsed().as_secs_f64()))?;
+    output::summary(arguments.json.as_deref(), || {
+        summary(&solved, begun.elapsed().as_secs_f64()) + &family::besides(&multiple)
+    })?;
     if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
         return Err(arguments.checkpoint.interrupted());
     }

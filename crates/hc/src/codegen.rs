@@ -177,7 +177,7 @@ fn one_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{CodegenError, generate};
-    use crate::family::{Family, StartFile};
+    use crate::family::{Family, Fibre, StartFile};
 
     fn family() -> Family {
         let family = poly::Family::from_formulas(&["x"], &["a", "b"], &["x^2 - (a + b)*x + a*b"]).unwrap();
@@ -188,8 +188,8 @@ mod tests {
         StartFile {
             parameters: parameters.map(|p| [p, 0.0]).to_vec(),
             solutions: solutions.iter().map(|&x| vec![[x, 0.0]]).collect(),
-            trace_test: None,
             stopped: "by hand\n}".to_owned(),
+            ..StartFile::new(&Fibre::default(), None, "")
         }
     }
 

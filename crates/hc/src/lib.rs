@@ -47,7 +47,7 @@
 //!
 //! // All solutions for some generic parameters: eight, of which four are tracked.
 //! let found = family.monodromy(&hc::MonodromyOptions::new())?;
-//! assert_eq!(found.stopped, hc::Stopped::Trace, "the trace test shows that no solution is missing");
+//! assert_eq!(found.stopped, hc::Stopped::Trace, "the orbits are whole, and there are no others");
 //! let fibre = found.fibre;
 //! assert_eq!((fibre.len(), fibre.representatives.as_ref().map(Vec::len)), (8, Some(4)));
 //!

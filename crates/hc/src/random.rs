@@ -38,6 +38,8 @@ pub(crate) enum Stream {
     Loop(u64),
     /// A point of parameters through which a detour leads, by number.
     Detour(u64),
+    /// Parameters at which it is seen whether a solution is one for all.
+    Elsewhere,
 }
 
 impl Stream {
@@ -54,6 +56,7 @@ impl Stream {
             Stream::Slice(k) => between(7, k),
             Stream::Detour(k) => between(9, k),
             Stream::Rounding => 4,
+            Stream::Elsewhere => 14,
             Stream::Perturbation => 6,
             Stream::Combinations => 11,
             Stream::Beside => 13,
@@ -130,7 +133,14 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let single = [Stream::Combinations, Stream::Beside, Stream::Perturbation, Stream::Rounding, Stream::Trace];
+        let single = [
+            Stream::Combinations,
+            Stream::Beside,
+            Stream::Perturbation,
+            Stream::Rounding,
+            Stream::Trace,
+            Stream::Elsewhere,
+        ];
         let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {
             let purposes = [

@@ -82,6 +82,7 @@ impl Family {
         roots: Option<usize>,
         patience: Option<usize>,
         trace: bool,
+        only_component: bool,
         first: Option<PyRef<'py, Fibre>>,
         how: How,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -91,7 +92,7 @@ impl Family {
             let mut options = MonodromyOptions::new().seed(seed);
             options.roots = roots;
             options.patience = patience.unwrap_or(options.patience);
-            options.trace_test = trace;
+            (options.trace_test, options.only_component) = (trace, only_component);
             let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
                 let first = match &first {
                     Some(first) => hc::Fibre::clone(first),

@@ -400,6 +400,19 @@ def test_families_at_special_targets():
     assert len(found) == 2 and not found.complete
 
 
+def test_families_with_several_orbits():
+    # Zero whatever the parameters, two more, and 1 with multiplicity 2.
+    family = hc.Family(["x*(x - 1)^2*(x^2 - a)"], "x", "a")
+    found = family.monodromy()
+    assert len(found) == 3 and found.complete and found.orbits == [2, 1] and found.others == "start system"
+    assert [(point.round(6).tolist(), count) for point, count in found.multiple] == [([1], 2)]
+    assert sorted(family.track([[4.0]]).real_points[0][:, 0].round(12)) == [-2.0, 0.0, 2.0]
+    part = family.monodromy(first=([4.0], [2.0]), only_component=True)
+    assert (len(part), part.stopped, part.others) == (2, "component whole", "not sought") and not part.complete
+    with pytest.raises(hc.InputError, match="first solution 1 is none"):
+        family.monodromy(first=([4.0], [3.0]))
+
+
 def test_tables_of_other_people(tmp_path):
     import io
 

@@ -17,8 +17,8 @@ pub struct Status {
     /// Whether a process records in the directory now.
     pub running: bool,
     /// The part of the work, from 1. For a solve this is the start system. For monodromy 1 is the
-    /// search, 2 its second half with solutions for other parameters, and from 3 on comes the trace
-    /// test. Zero before the first part.
+    /// search, 10 a start system for the same parameters, 2 the search with the solutions that it
+    /// lacked, and from 3 on comes the trace test. Zero before the first part.
     pub part: u32,
     /// The round of this part, from 1: a solve first tracks all paths, then doubtful paths again.
     /// Zero before the first round.

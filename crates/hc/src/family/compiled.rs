@@ -2,11 +2,13 @@
 
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::pair::{TRIES, find_pair};
+use super::pair::{Beginning, MOVING_TRIES, Pairs, TRIES};
+use super::still::{Still, refined};
 use super::symmetry::Symmetry;
 use crate::checkpoint::{self, Hash, Job};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
+use crate::refine::Refiner;
 use crate::solve::Solutions;
 use crate::tolerances::{families, same};
 use num_complex::Complex64;
@@ -101,10 +103,15 @@ impl Family {
     /// Whether none of the factors that the family declares nonzero vanishes at the solution `x`
     /// (one entry per unknown) for the parameters `p` (one entry per parameter).
     pub fn accepts(&self, p: &[Complex64], x: &[Complex64]) -> bool {
+        self.accepts_within(p, x, families::VANISHES)
+    }
+
+    /// [`accepts`](Self::accepts), where values up to `tolerance` vanish.
+    pub(super) fn accepts_within(&self, p: &[Complex64], x: &[Complex64], tolerance: f64) -> bool {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
         self.nonzero.values(&mut memory, x, p, &mut values);
-        values.iter().all(|z| z.norm() > families::VANISHES)
+        values.iter().all(|z| z.norm() > tolerance)
     }
 
     /// Checks that a fibre has the family's numbers of parameters and unknowns.
@@ -147,12 +154,51 @@ impl Family {
         Fibre { representatives: Some(representatives), ..fibre }
     }
 
-    /// A first solution, for some generic parameters. The same seed gives the same solution.
+    /// A first solution, for some generic parameters; if one is found that parameters move, such a
+    /// solution. The same seed gives the same solution.
     ///
     /// # Errors
     /// If no regular solution is found that the family accepts.
     pub fn find_pair(&self, seed: u64) -> Result<Fibre, FamilyError> {
-        find_pair(self.system(), |p, x| self.accepts(p, x), seed, TRIES)?.ok_or(FamilyError::NoPair)
+        let pairs = Pairs::new(self.system())?;
+        let moves = |p: &[Complex64], x: &[Complex64]| !Still::new(&self.program, p).is(x);
+        let mut still = None;
+        let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
+        for attempt in 0..TRIES {
+            if still.is_some() && attempt >= MOVING_TRIES {
+                break;
+            }
+            let Some(pair) = pairs.from(seed, attempt, &Beginning::default(), accept) else { continue };
+            if moves(&pair.parameters, pair.solution(0)) {
+                return Ok(pair);
+            }
+            still.get_or_insert(pair);
+        }
+        still.ok_or(FamilyError::NoPair)
+    }
+
+    /// The first solutions of a search, refined if they are not.
+    ///
+    /// # Errors
+    /// If one is not a regular solution, or far from one.
+    pub(super) fn polished(&self, first: &Fibre) -> Result<Fibre, FamilyError> {
+        let mut refiner = Refiner::new(&self.program);
+        let mut polished = first.clone();
+        let n = first.dimension.max(1);
+        for (k, x) in polished.solutions.chunks_exact_mut(n).enumerate() {
+            let refined = refined(&mut refiner, &first.parameters, x);
+            if !(refined.accuracy < families::ACCURATE && refiner.is_regular(&first.parameters, &refined)) {
+                return Err(FamilyError::FirstSingular { solution: k + 1 });
+            }
+            let moved = relative_distance(&refined.point, x);
+            if moved > families::FIRST_MOVED {
+                return Err(FamilyError::FirstSolution { solution: k + 1, moved });
+            }
+            if moved >= families::STORED_MOVED {
+                x.copy_from_slice(&refined.point);
+            }
+        }
+        Ok(polished)
     }
 
     /// Drops solutions outside the family, where a factor vanishes that it declares nonzero. The paths to them count

@@ -3,31 +3,35 @@
 use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
 use super::fibre::Fibre;
+use super::member::{Member, most_paths};
 use super::monodromy::LoopSearch;
-use super::pair::find_pair;
+use super::pair::Pairs;
 use super::search::{Monodromy, MonodromyOptions, Stopped, TraceTest};
 use super::sides::{Searched, Side};
+use super::still::{Still, refined};
 use super::trace::{enlarge, trace_test};
-use crate::checkpoint::{Checkpoint, Job, Pieces};
+use crate::checkpoint::{Checkpoint, Job, Piece, Pieces};
+use crate::distinct::Known;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
+use crate::refine::Refiner;
 use crate::run::{RanksRun, Run};
+use crate::tolerances::families;
 use num_complex::Complex64;
+use poly::Interpreter;
 use serde::Serialize;
 
-/// Other first pairs, and how often each is tried to be found.
-const PAIRS: u64 = 48;
-const FEW_TRIES: u64 = 20;
 /// The parts of the pieces of [`Family::complete`]: the search goes on in the second with solutions
-/// for other parameters, and in the last with those alone.
+/// from elsewhere, and in the second last with those alone; in the last a start system is solved.
 const AGAIN: u32 = 1;
 const TRACE: u32 = 2;
 const ALONE: u32 = 8;
+const MEMBER: u32 = 9;
 
 impl Family {
-    /// All solutions for some generic parameters: a first pair, and the solutions that loops in
-    /// parameter space find from it. The number of roots that the family states ends the search,
-    /// unless the options have a number.
+    /// All solutions for some generic parameters: a first pair, the solutions that loops in
+    /// parameter space find from it, and those of other orbits. The number of roots that the family
+    /// states ends the search, unless the options have a number.
     ///
     /// # Errors
     /// If no first solution is found.
@@ -36,17 +40,19 @@ impl Family {
     }
 
     /// All solutions for the parameters of `first`, which has one or several of them. Where loops
-    /// bring nothing new, solutions for other parameters are tracked to these parameters.
+    /// bring nothing new, a start system for these parameters is solved if that takes no more paths than
+    /// the loops took; otherwise solutions for other parameters are tracked to these parameters.
     ///
     /// # Errors
-    /// If `first` belongs to another family, an option is out of range, a stated symmetry is not
-    /// one, or the enlarged family of a requested [trace test](Self::trace_test) does not compile.
+    /// If `first` belongs to another family or is not a regular solution, an option is out of range, a
+    /// stated symmetry is not one, or the enlarged family of a requested [trace test](Self::trace_test)
+    /// does not compile.
     pub fn complete(&self, first: &Fibre, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
         Run::new().complete(self, first, options)
     }
 
-    /// The trace test of a fibre: whether the fibre is whole. It takes several times as long as
-    /// finding the fibre. The option `patience` applies to the further points that the test needs.
+    /// The trace test of a fibre: whether it is a union of whole orbits. It tells nothing about orbits of
+    /// which the fibre has no solution. It takes several times as long as finding the fibre. The option `patience` applies to the further points that the test needs.
     ///
     /// # Errors
     /// If the fibre belongs to another family, or the enlarged family of the test does not compile.
@@ -71,38 +77,34 @@ impl Family {
         let pieces = Pieces::new(checkpoint, monitor, lead);
         let searched = Searched { system: &self.program, enlarged: false };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
-        let search = LoopSearch { searched: &searched, accept: &accept, symmetry: &self.symmetry, options: &options };
-        let mut found = search.fill(first, pieces);
-        if found.stopped == Stopped::NoProgress {
-            let others = self.other_pairs(options.seed)?;
-            if let Some(fibre) = search.joined(&found.fibre, &others, monitor) {
-                let (mut loops, mut paths) = (found.loops, found.paths + others.len());
-                let mut again = |from: &Fibre, part: u32| {
-                    let found = search.fill(from, pieces.part(part));
-                    (loops, paths) = (loops + found.loops, paths + found.paths);
-                    Monodromy { loops, paths, ..found }
-                };
-                // The first pair may be degenerate, and not one of the solutions that are counted.
-                let alone = options.roots.map(|_| again(&fibre.without_first(found.fibre.len()), ALONE));
-                found = match alone.filter(|alone| alone.stopped != Stopped::NoProgress) {
-                    Some(alone) => alone,
-                    None => again(&fibre, AGAIN),
-                };
+        let still = Still::new(&self.program, &first.parameters);
+        let (moving, apart) = still.parted(&self.polished(first)?);
+        let (is_still, symmetry) = (|x: &[Complex64]| still.is(x), &self.symmetry);
+        let search =
+            LoopSearch { searched: &searched, accept: &accept, is_still: &is_still, symmetry, options: &options };
+        let found = search.fill(&moving, pieces);
+        let (mut found, apart, member) = match found.stopped {
+            Stopped::NoProgress if !options.only_component => {
+                self.with_others(&search, &still, found, apart, pieces)?
             }
+            _ => (found, apart, None),
+        };
+        // Of a known number of solutions, these are not counted.
+        if found.stopped != Stopped::RootsReached {
+            let (fibre, sizes) = search.with_still(found.fibre, &apart, monitor);
+            found.fibre = fibre;
+            found.orbits.extend(sizes);
+            found.orbits.sort_unstable_by(|a, b| b.cmp(a));
         }
         if options.trace_test && matches!(found.stopped, Stopped::NoProgress | Stopped::TooMany) {
             let test = trace_test(self.system(), &found.fibre, &options, pieces.part(TRACE))?;
             // What an interrupted test says is no deviation.
-            if monitor.is_cancelled() {
-                found.stopped = Stopped::Cancelled;
-            } else {
-                found.trace = Some(test);
-                if test.passed(found.fibre.len()) {
-                    found.stopped = Stopped::Trace;
-                    found.fibre.is_partial = false;
-                }
-            }
+            found.trace = Some(test).filter(|_| !monitor.is_cancelled());
         }
+        if found.stopped == Stopped::NoProgress && monitor.is_cancelled() {
+            found.stopped = Stopped::Cancelled;
+        }
+        judge(&mut found, member, &options);
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }
@@ -136,9 +138,11 @@ impl Family {
         self.check_symmetry(first)
     }
 
-    /// The options, with the number of roots that the family states unless they have one.
+    /// The options, with the number of roots that the family states unless they have one, or ask for a
+    /// single orbit.
     fn stated(&self, options: &MonodromyOptions) -> MonodromyOptions {
-        MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() }
+        let of_family = self.roots().filter(|_| !options.only_component);
+        MonodromyOptions { roots: options.roots.or(of_family), ..options.clone() }
     }
 
     /// What a checkpoint of a search is of, and all ranks do.
@@ -146,12 +150,94 @@ impl Family {
         self.job("monodromy", &SearchInputs { options, start: PointsHash::of_fibre(first) })
     }
 
-    /// First pairs from other random points. On sheets that nearly part from each other loops of any
-    /// common size may keep to one, on which the trace test passes; pairs lie on all.
-    fn other_pairs(&self, seed: u64) -> Result<Vec<Fibre>, FamilyError> {
-        let pair = |k: u64| find_pair(self.system(), |p, x| self.accepts(p, x), seed.wrapping_add(k), FEW_TRIES);
-        Ok((1..=PAIRS).map(pair).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+    /// The search goes on with solutions from elsewhere: those of a start system for the same parameters,
+    /// and first pairs for other parameters if the start system is too large or has lost paths. On sheets
+    /// that nearly part from each other loops of any common size may keep to one, on which the trace test
+    /// passes; and no loop leads from one orbit to another.
+    fn with_others(
+        &self,
+        search: &LoopSearch<'_, Interpreter>,
+        still: &Still<'_, Interpreter>,
+        mut found: Monodromy,
+        apart: Vec<Complex64>,
+        pieces: Pieces<'_>,
+    ) -> Result<(Monodromy, Vec<Complex64>, Option<Member>), FamilyError> {
+        let (options, monitor, parameters) = (search.options, pieces.monitor, &found.fibre.parameters);
+        let record = (pieces.part(MEMBER), Piece::Whole(0));
+        let member: Option<Member> =
+            record.0.take(record.1, |member| fits(member, found.fibre.dimension)).unwrap_or_else(|| {
+                let member = self.member(parameters, most_paths(found.paths), options.seed, monitor);
+                record.0.record(record.1, found.fibre.len(), &member);
+                member
+            });
+        let mut refiner = Refiner::new(&self.program);
+        let mut clean = |x: &[Complex64]| {
+            let refined = refined(&mut refiner, parameters, x);
+            if refined.accuracy < families::ACCURATE { refined.point } else { x.to_vec() }
+        };
+        let member = member.map(|member| {
+            let regular = member.regular.iter().map(|x| clean(x)).collect();
+            Member { regular, ..member }
+        });
+        let is_whole = member.as_ref().is_some_and(|member| member.whole);
+        let others = if is_whole { Vec::new() } else { Pairs::new(self.system())?.others(options.seed, search.accept) };
+        let seeds = || member.iter().flat_map(|member| &member.regular).map(Vec::as_slice);
+        // What is one for other parameters is one for these.
+        let found_still = seeds().chain(others.iter().map(|pair| pair.solution(0))).filter(|x| still.is(x));
+        let apart = apart.into_iter().chain(found_still.flatten().copied()).collect();
+        found.paths += member.as_ref().map_or(0, |member| member.paths) + others.len();
+        if let Some(fibre) = search.joined(&found.fibre, seeds(), &others, monitor) {
+            let (mut loops, mut paths) = (found.loops, found.paths);
+            let mut again = |from: &Fibre, part: u32| {
+                let found = search.fill(from, pieces.part(part));
+                (loops, paths) = (loops + found.loops, paths + found.paths);
+                Monodromy { loops, paths, ..found }
+            };
+            // The first pair may be degenerate, and not one of the solutions that are counted.
+            let alone = options.roots.map(|_| again(&fibre.without_first(found.fibre.len()), ALONE));
+            found = match alone.filter(|alone| alone.stopped != Stopped::NoProgress) {
+                Some(alone) => alone,
+                None => again(&fibre, AGAIN),
+            };
+        }
+        Ok((found, apart, member))
     }
+}
+
+/// Whether a recorded member has points of so many coordinates.
+fn fits(member: &Option<Member>, unknowns: usize) -> bool {
+    let points = |member: &Member| {
+        member.regular.iter().chain(member.multiple.iter().map(|m| &m.value)).all(|x| x.len() == unknowns)
+    };
+    member.as_ref().is_none_or(points)
+}
+
+/// Says why the search ended, and what is known about other solutions.
+fn judge(found: &mut Monodromy, member: Option<Member>, options: &MonodromyOptions) {
+    let count = found.fibre.len();
+    let passed = found.trace.is_some_and(|test| test.passed(count));
+    if matches!(found.stopped, Stopped::NoProgress | Stopped::TooMany) {
+        let same = |member: &Member| {
+            let known = Known::new(member.regular.iter().map(Vec::as_slice));
+            member.regular.len() == count && found.fibre.iter().all(|x| known.has(x, options.fibre.coincidence))
+        };
+        let agrees = member.as_ref().is_some_and(|member| member.whole && same(member));
+        // Special parameters, which random ones are not, may have fewer solutions than generic ones. The trace test,
+        // which leaves them, tells.
+        let generic = found.fibre.parameters.iter().all(|p| p.im != 0.0);
+        // A known number that is not reached contradicts what else is known.
+        let contradicts = options.roots.is_some_and(|roots| roots != count);
+        found.stopped = match (passed, agrees && !contradicts) {
+            (true, true) => Stopped::Trace,
+            (true, false) if options.only_component => Stopped::ComponentWhole,
+            (true, false) if options.roots == Some(count) => Stopped::RootsReached,
+            (true, false) => Stopped::OrbitsWhole,
+            (false, true) if generic => Stopped::StartSystem,
+            (false, _) => found.stopped,
+        };
+    }
+    found.fibre.is_partial = !found.stopped.is_complete();
+    found.multiple = member.map_or_else(Vec::new, |member| member.multiple);
 }
 
 impl Run {

@@ -76,6 +76,26 @@ pub enum FamilyError {
         /// Number of parameters of the family.
         parameters: usize,
     },
+    /// A first solution that is none.
+    #[error(
+        "first solution {solution} is none for its parameters: Newton's method moves it by {moved:.2} of its size; \
+        correct it, or let a first pair be found"
+    )]
+    FirstSolution {
+        /// The solution, from 1.
+        solution: usize,
+        /// The relative distance of the solution to which Newton's method leads.
+        moved: f64,
+    },
+    /// A first solution at which Newton's method does not settle, or that is singular.
+    #[error(
+        "first solution {solution} is no regular solution for its parameters: Newton's method does not settle there; \
+        correct it, or let a first pair be found"
+    )]
+    FirstSingular {
+        /// The solution, from 1.
+        solution: usize,
+    },
     /// No first solution was found.
     #[error("no regular solution was found for any parameters; give a pair of parameters and solution")]
     NoPair,

@@ -2,14 +2,16 @@
 //! solution.
 //!
 //! Parameters go round random triangles, and solutions return as other solutions of the same
-//! irreducible component (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). Whether
-//! a fibre is whole is never guessed: a known count or the [trace test](crate::Family::trace_test)
-//! shows it, and the result says which.
+//! irreducible component (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722): those of
+//! their orbit under the monodromy group. The [trace test](crate::Family::trace_test) shows whether
+//! orbits are whole. Whether there are others is a question that no loop answers.
 
 use super::fibre::Fibre;
+use super::joined::Joined;
 use super::reach::Reach;
 use super::search::{Monodromy, MonodromyOptions, Stopped};
 use super::sides::Searched;
+use super::still::refined;
 use super::symmetry::Symmetry;
 use crate::checkpoint::{Piece, Pieces};
 use crate::distinct::{coincidences, relative_distance};
@@ -29,7 +31,8 @@ pub(crate) fn monodromy<E: Evaluate>(
     monitor: &Monitor,
 ) -> Monodromy {
     let (searched, symmetry) = (&Searched { system, enlarged: false }, &Symmetry::default());
-    LoopSearch { searched, accept: &|_, _| true, symmetry, options }.fill(start, Pieces::alone(monitor))
+    LoopSearch { searched, accept: &|_, _| true, is_still: &|_| false, symmetry, options }
+        .fill(start, Pieces::alone(monitor))
 }
 
 /// A search for solutions by loops in parameter space; of a symmetric family one solution of each orbit goes
@@ -38,31 +41,53 @@ pub(super) struct LoopSearch<'a, E> {
     pub(super) searched: &'a Searched<'a, E>,
     /// Asked about every new solution; solutions that it refuses (degenerate ones) are dropped.
     pub(super) accept: &'a dyn Fn(&[Complex64], &[Complex64]) -> bool,
+    /// Asked about every new solution; solutions that no parameter moves are dropped too.
+    pub(super) is_still: &'a dyn Fn(&[Complex64]) -> bool,
     pub(super) symmetry: &'a Symmetry,
     pub(super) options: &'a MonodromyOptions,
 }
 
 impl<E: Evaluate> LoopSearch<'_, E> {
-    /// The fibre with the solutions to which those of other fibres lead; `None` if it has them all.
-    pub(super) fn joined(&self, fibre: &Fibre, others: &[Fibre], monitor: &Monitor) -> Option<Fibre> {
+    /// The fibre with further solutions for its parameters, and those to which solutions of other fibres
+    /// lead; `None` if it has them all.
+    pub(super) fn joined<'x>(
+        &self,
+        fibre: &Fibre,
+        further: impl Iterator<Item = &'x [Complex64]>,
+        others: &[Fibre],
+        monitor: &Monitor,
+    ) -> Option<Fibre> {
         let pieces = Pieces::alone(monitor);
-        let mut filling = Filling { search: self, pieces, fibre: fibre.clone() };
+        let mut filling = Filling::new(self, pieces, fibre.clone());
+        filling.add_accepted(further.map(|x| (None, x)));
         for other in others {
             let (ends, _) = self.searched.track(other, &fibre.parameters, &self.options.fibre, pieces);
             let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
-            filling.add_accepted(regular.map(|(_, x)| x));
+            filling.add_accepted(regular.map(|(_, x)| (None, x)));
         }
         (filling.fibre.len() > fibre.len()).then_some(filling.fibre)
+    }
+
+    /// The fibre with solutions that no parameter moves, and the sizes of their orbits under the
+    /// symmetry.
+    pub(super) fn with_still(&self, fibre: Fibre, still: &[Complex64], monitor: &Monitor) -> (Fibre, Vec<usize>) {
+        let (n, known) = (fibre.dimension.max(1), fibre.len());
+        let search = LoopSearch { is_still: &|_| false, ..*self };
+        let mut filling = Filling::new(&search, Pieces::alone(monitor), fibre);
+        filling.add(still.chunks_exact(n).map(|x| (None, x)));
+        let sizes = filling.joined.sizes_from(known);
+        (filling.fibre, sizes)
     }
 
     /// Completes `start` (one or several solutions for generic parameters). Each loop is a piece.
     pub(super) fn fill(&self, start: &Fibre, pieces: Pieces<'_>) -> Monodromy {
         let LoopSearch { searched, symmetry, options, .. } = self;
-        let mut filling = Filling { search: self, pieces, fibre: start.clone() };
+        let mut filling = Filling::new(self, pieces, start.clone());
         if !symmetry.is_trivial() {
             filling.fibre.solutions.clear();
             filling.fibre.representatives = Some(Vec::new());
-            filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
+            filling.joined = Joined::default();
+            filling.add(start.solutions.chunks_exact(start.dimension.max(1)).map(|x| (None, x)));
         }
         // Loops have each of these sizes in turn.
         let Reach { natural, wide, .. } = Reach::new(searched.system, start);
@@ -84,6 +109,9 @@ impl<E: Evaluate> LoopSearch<'_, E> {
             if known > options.max_solutions {
                 break Stopped::TooMany;
             }
+            if known == 0 {
+                break Stopped::NoProgress;
+            }
             let mut random = Random::of(options.seed, Stream::Loop(loops as u64));
             let scale = scale(turns, options.patience);
             let sizes = &sizes[loops % sizes.len()];
@@ -94,8 +122,9 @@ impl<E: Evaluate> LoopSearch<'_, E> {
             loops += 1;
             idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
         };
+        let orbits = filling.joined.sizes();
         let fibre = Fibre { is_partial: !stopped.is_complete(), ..filling.fibre };
-        Monodromy { fibre, stopped, loops, paths, trace: None }
+        Monodromy { fibre, stopped, orbits, multiple: Vec::new(), loops, paths, trace: None }
     }
 }
 
@@ -122,9 +151,24 @@ struct Filling<'a, E> {
     search: &'a LoopSearch<'a, E>,
     pieces: Pieces<'a>,
     fibre: Fibre,
+    joined: Joined,
 }
 
-impl<E: Evaluate> Filling<'_, E> {
+/// What a loop has brought, as it is recorded: solutions, those of them that represent orbits of a
+/// symmetry, and which solutions are joined.
+type Brought = (Vec<Complex64>, Option<Vec<usize>>, Vec<(usize, usize)>);
+
+/// Points on a side of a loop, and from which points of the side before they come. The points of the side
+/// before that brought none, and those that share theirs with others, are the exceptions.
+type Carried = (Vec<Complex64>, [Vec<usize>; 2]);
+
+impl<'a, E: Evaluate> Filling<'a, E> {
+    fn new(search: &'a LoopSearch<'a, E>, pieces: Pieces<'a>, fibre: Fibre) -> Self {
+        let mut joined = Joined::default();
+        joined.grow(fibre.len());
+        Filling { search, pieces, fibre, joined }
+    }
+
     /// Tracks the fibre round one triangle and adds new solutions, or takes them from a record.
     /// Returns the number of paths.
     fn go_round(&mut self, number: usize, corners: &[Vec<Complex64>; 2]) -> usize {
@@ -133,117 +177,168 @@ impl<E: Evaluate> Filling<'_, E> {
         let paths = 3 * represented.unwrap_or(known);
         self.pieces.monitor.enter(Stage::Loop, paths as u64);
         // A record has the solutions that the loop has added, and those of them that represent orbits.
-        let fits = |(solutions, representatives): &(Vec<Complex64>, Option<Vec<usize>>)| {
+        let fits = |(solutions, representatives, joins): &Brought| {
             let len = known + solutions.len() / n;
             let are_there = |which: &Vec<usize>| which.iter().all(|&k| k < len);
             solutions.len().is_multiple_of(n)
                 && representatives.is_some() == represented.is_some()
                 && representatives.as_ref().is_none_or(are_there)
+                && joins.iter().all(|&(a, b)| a.max(b) < len)
         };
-        if let Some((solutions, representatives)) = self.pieces.take(Piece::Whole(number), fits) {
+        if let Some((solutions, representatives, joins)) = self.pieces.take(Piece::Whole(number), fits) {
             self.fibre.solutions.extend(solutions);
             if let (Some(all), Some(more)) = (&mut self.fibre.representatives, representatives) {
                 all.extend(more);
             }
+            self.joined.grow(self.fibre.len());
+            joins.into_iter().for_each(|(a, b)| self.joined.join(a, b));
             return paths;
         }
-        let back = self.carried(number, corners);
-        self.add_accepted(back.chunks_exact(n));
+        // Joins from before the loop are not its own.
+        self.joined.take_new();
+        let (back, from) = self.carried(number, corners);
+        self.add_accepted(from.into_iter().zip(back.chunks_exact(n)));
         let new = |all: &Vec<usize>| all[represented.unwrap_or(0)..].to_vec();
         let representatives = self.fibre.representatives.as_ref().map(new);
-        let added = (self.fibre.solutions[known * n..].to_vec(), representatives);
+        let added: Brought = (self.fibre.solutions[known * n..].to_vec(), representatives, self.joined.take_new());
         self.pieces.record(Piece::Whole(number), self.fibre.len(), &added);
         paths
     }
 
-    /// The points to which solutions come back after a loop.
-    fn carried(&self, number: usize, corners: &[Vec<Complex64>; 2]) -> Vec<Complex64> {
+    /// The points to which solutions come back after a loop, and the solutions from which they come.
+    fn carried(&self, number: usize, corners: &[Vec<Complex64>; 2]) -> (Vec<Complex64>, Vec<Option<usize>>) {
         let n = self.fibre.dimension;
         let mut moving = self.fibre.tracked();
+        let mut from: Vec<Option<usize>> = match &self.fibre.representatives {
+            Some(which) => which.iter().map(|&k| Some(k)).collect(),
+            None => (0..moving.len()).map(Some).collect(),
+        };
         let is_long = moving.len() > LONG;
         for (side, corner) in [&corners[0], &corners[1], &self.fibre.parameters].into_iter().enumerate() {
             let step = Piece::Step(2 * number + side);
-            let fits = |solutions: &Vec<Complex64>| solutions.len().is_multiple_of(n.max(1));
+            let count = moving.len();
+            let fits = |(solutions, [gone, _]): &Carried| {
+                gone.is_sorted() && gone.len() <= count && solutions.len() == (count - gone.len()) * n
+            };
             // The solutions of the last side are recorded with the loop.
             let is_recorded = is_long && side < corners.len();
-            let solutions = match is_recorded.then(|| self.pieces.take(step, fits)).flatten() {
-                Some(solutions) => solutions,
+            let carried = match is_recorded.then(|| self.pieces.take(step, fits)).flatten() {
+                Some(carried) => carried,
                 None => {
-                    let solutions = self.moved(&moving, corner);
+                    let carried = self.moved(&moving, corner);
                     if is_recorded {
-                        self.pieces.record(step, self.fibre.len(), &solutions);
+                        self.pieces.record(step, self.fibre.len(), &carried);
                     }
-                    solutions
+                    carried
                 }
             };
+            let (solutions, [gone, shared]) = carried;
+            for k in shared {
+                from.get_mut(k).into_iter().for_each(|from| *from = None);
+            }
+            let mut k = 0;
+            from.retain(|_| {
+                k += 1;
+                gone.binary_search(&(k - 1)).is_err()
+            });
             moving = Fibre::new(corner.clone(), n, solutions);
         }
-        moving.solutions
+        (moving.solutions, from)
     }
 
     /// The solutions for other parameters at which paths end well.
-    fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Vec<Complex64> {
+    fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Carried {
         let LoopSearch { searched, options, .. } = self.search;
         let options = &options.fibre;
         let (ends, _) = searched.track(fibre, target, options, self.pieces);
+        let regular = || ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        let mut solutions: Vec<Complex64> = regular().flat_map(|(_, x)| x.iter().copied()).collect();
         // Paths that share an end have been counted as failed; whichever is true is found by a
         // later loop.
-        let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
-        let mut solutions: Vec<Complex64> = regular.flat_map(|(_, x)| x.iter().copied()).collect();
-        let drop = repeated(&solutions, fibre.dimension, 0, options.coincidence);
+        let groups = coincidences(solutions.chunks_exact(fibre.dimension.max(1)).enumerate(), options.coincidence);
+        let numbers: Vec<usize> = regular().map(|(r, _)| r.path).collect();
+        let drop = repeated(&groups, numbers.len(), 0);
         remove(&mut solutions, fibre.dimension, &drop);
-        solutions
+        let mut stays = vec![false; fibre.len()];
+        numbers.iter().zip(&drop).filter(|(_, dropped)| !**dropped).for_each(|(&k, _)| stays[k] = true);
+        let gone = (0..fibre.len()).filter(|&k| !stays[k]).collect();
+        (solutions, [gone, groups.iter().map(|group| numbers[group[0]]).collect()])
     }
 
-    /// Adds points that are refined to solutions that are wanted and not known yet.
-    fn add_accepted<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
+    /// Adds points that are refined to solutions that are wanted and not known yet, each with the
+    /// solution from which a loop leads to it.
+    fn add_accepted<'x>(&mut self, points: impl Iterator<Item = (Option<usize>, &'x [Complex64])>) {
         let LoopSearch { searched, accept, .. } = self.search;
         let mut refiner = Refiner::new(searched.system);
         let mut new = Vec::new();
-        for x in points {
-            let refined = refiner.refine(&self.fibre.parameters, x);
+        for (from, x) in points {
+            let refined = refined(&mut refiner, &self.fibre.parameters, x);
             if refined.accuracy < families::ACCURATE && accept(&self.fibre.parameters, &refined.point) {
-                new.push(refined.point);
+                new.push((from, refined.point));
             }
         }
-        self.add(new.iter().map(Vec::as_slice));
+        self.add(new.iter().map(|(from, x)| (*from, x.as_slice())));
     }
 
-    /// Adds points that are not known yet, each with its orbit.
-    fn add<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
-        let LoopSearch { searched, symmetry, options, .. } = self.search;
+    /// Adds points that are not known yet, each with its orbit under the symmetry.
+    fn add<'x>(&mut self, points: impl Iterator<Item = (Option<usize>, &'x [Complex64])>) {
+        let LoopSearch { searched, symmetry, options, is_still, .. } = self.search;
         let (n, known, tolerance) = (self.fibre.dimension, self.fibre.len(), options.fibre.coincidence);
-        let mut first = Vec::new();
+        // Of each point its number, that of its last image, and from where it comes.
+        let mut added: Vec<(usize, usize, Option<usize>)> = Vec::new();
         let mut refiner = Refiner::new(searched.system);
-        for x in points {
-            if symmetry.is_trivial() {
-                self.fibre.solutions.extend_from_slice(x);
-                continue;
-            }
-            first.push(self.fibre.len());
+        for (from, x) in points {
+            let first = self.fibre.len();
             self.fibre.solutions.extend_from_slice(x);
-            for image in symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
-                // A point that is no solution is no image under a symmetry.
-                let refined = refiner.refine(&self.fibre.parameters, &image);
-                if refined.accuracy < families::ACCURATE && relative_distance(&refined.point, &image) < tolerance {
-                    self.fibre.solutions.extend(refined.point);
+            if !symmetry.is_trivial() {
+                for image in symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
+                    // A point that is no solution is no image under a symmetry.
+                    let refined = refined(&mut refiner, &self.fibre.parameters, &image);
+                    if refined.accuracy < families::ACCURATE && relative_distance(&refined.point, &image) < tolerance {
+                        self.fibre.solutions.extend(refined.point);
+                    }
                 }
             }
+            added.push((first, self.fibre.len(), from));
         }
-        let drop = repeated(&self.fibre.solutions, n, known, tolerance);
+        let count = self.fibre.len();
+        let groups = coincidences(self.fibre.solutions.chunks_exact(n.max(1)).enumerate(), tolerance);
+        let mut drop = repeated(&groups, count, known);
+        // The first of each group, to which its other points belong.
+        let mut same: Vec<usize> = (0..count).collect();
+        groups.iter().flatten().zip(groups.iter().flat_map(|g| g.iter().map(|_| g[0]))).for_each(|(&k, f)| same[k] = f);
+        for &(first, end, _) in &added {
+            if !drop[first] && is_still(&self.fibre.solutions[first * n..(first + 1) * n]) {
+                drop[first..end].fill(true);
+            }
+        }
         remove(&mut self.fibre.solutions, n, &drop);
+        // Numbers once the points that are dropped before them are left out.
+        let before: Vec<usize> = drop
+            .iter()
+            .scan(0, |sum, &dropped| {
+                let now = *sum;
+                *sum += usize::from(dropped);
+                Some(now)
+            })
+            .collect();
+        let number = |k: usize| (!drop[same[k]]).then(|| same[k] - before[same[k]]);
         if let Some(representatives) = &mut self.fibre.representatives {
-            // Numbers once the points that are dropped before them are left out.
-            let before = |k: usize| drop[..k].iter().filter(|&&dropped| dropped).count();
-            representatives.extend(first.into_iter().filter(|&k| !drop[k]).map(|k| k - before(k)));
+            representatives.extend(added.iter().map(|&(first, ..)| first).filter(|&k| !drop[k]).map(|k| k - before[k]));
+        }
+        self.joined.grow(self.fibre.len());
+        for (first, end, from) in added {
+            let Some(to) = number(first) else { continue };
+            let images = (first + 1..end).filter_map(number);
+            from.into_iter().chain(images).for_each(|with| self.joined.join(with, to));
         }
     }
 }
 
-/// Which points after the first `keep` coincide with an earlier one.
-fn repeated(solutions: &[Complex64], n: usize, keep: usize, tolerance: f64) -> Vec<bool> {
-    let mut drop = vec![false; solutions.len() / n.max(1)];
-    for group in coincidences(solutions.chunks_exact(n.max(1)).enumerate(), tolerance) {
+/// Which of so many points, after the first `keep`, coincide with an earlier one, by groups of coinciding points.
+fn repeated(groups: &[Vec<usize>], count: usize, keep: usize) -> Vec<bool> {
+    let mut drop = vec![false; count];
+    for group in groups {
         for &k in group[1..].iter().filter(|&&k| k >= keep) {
             drop[k] = true;
         }

@@ -3,55 +3,133 @@
 //! Newton's method runs in unknowns and parameters together, from a random complex point. The
 //! equations are underdetermined, so the correction of least length is taken (Gauss-Newton).
 
+use super::error::FamilyError;
 use super::fibre::Fibre;
+use super::still::refined;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use num_complex::Complex64;
 use poly::simd::Isa;
-use poly::{CompileError, Evaluate, System};
+use poly::{Evaluate, Interpreter, System};
 
 /// Random points tried before the search is given up.
 pub(super) const TRIES: u64 = 1000;
+/// Of these, points tried for a solution that parameters move, if one is known that none moves.
+pub(super) const MOVING_TRIES: u64 = 100;
 const MAX_ITERATIONS: usize = 60;
+/// Other first pairs, and how often each is tried to be found; fewer from points of other sizes than one, and with
+/// unknowns that are zero.
+const PAIRS: u64 = 48;
+const FAR_PAIRS: u64 = 8;
+const ZERO_PAIRS: u64 = 8;
+const FEW_TRIES: u64 = 20;
+/// Sizes of the unknowns where Newton's method begins.
+const SIZES: [f64; 5] = [1.0, 32.0, 1024.0, 1.0 / 32.0, 1.0 / 1024.0];
+/// With more unknowns than this only single ones and all are set to zero; of the sets so many are used.
+const MANY_UNKNOWNS: usize = 10;
+const MOST_SETS: usize = 16;
 
-/// Finds a regular solution of a square system for some generic parameters, deterministic for a
-/// seed.
-///
-/// `accept` is asked about parameters and solution; `None` if none of the `tries` led to a regular
-/// solution that it accepts.
-///
-/// # Errors
-/// If the formulas cannot be compiled.
-pub(super) fn find_pair(
-    system: &System,
-    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
-    seed: u64,
-    tries: u64,
-) -> Result<Option<Fibre>, CompileError> {
-    let (n, m) = (system.variables().len(), system.parameters().len());
-    let compiled = system.compile()?;
-    let free = System::build(|s| {
-        let unknowns: Vec<_> = system.variables().iter().map(|name| s.variable(name)).collect();
-        let parameters: Vec<_> = system.parameters().iter().map(|name| s.variable(name)).collect();
-        system.instantiate(s, &unknowns, &parameters)
-    });
-    // The names and constants come from a system that exists already.
-    let Ok(free) = free else { return Ok(None) };
-    let free = free.compile()?;
-    let mut refiner = Refiner::new(&compiled);
-    for k in 0..tries {
-        let mut z = Random::of(seed, Stream::Member(k)).normals(n + m);
-        if !gauss_newton(&free, &mut z) {
-            continue;
+/// Where Newton's method begins.
+#[derive(Clone, Debug)]
+pub(super) struct Beginning {
+    /// The size of the unknowns; that of the parameters is one.
+    pub(super) size: f64,
+    /// Unknowns that are zero.
+    pub(super) zero: Vec<usize>,
+}
+
+impl Default for Beginning {
+    fn default() -> Self {
+        Beginning { size: 1.0, zero: Vec::new() }
+    }
+}
+
+/// What first pairs of a square system are sought with.
+pub(super) struct Pairs {
+    compiled: Interpreter,
+    /// With parameters as further unknowns.
+    free: Interpreter,
+}
+
+impl Pairs {
+    /// For a system with as many equations as unknowns.
+    ///
+    /// # Errors
+    /// If the formulas cannot be compiled.
+    pub(super) fn new(system: &System) -> Result<Pairs, FamilyError> {
+        let free = System::build(|s| {
+            let unknowns: Vec<_> = system.variables().iter().map(|name| s.variable(name)).collect();
+            let parameters: Vec<_> = system.parameters().iter().map(|name| s.variable(name)).collect();
+            system.instantiate(s, &unknowns, &parameters)
+        });
+        // The names and constants come from a system that exists already.
+        let free = free.map_err(|_| FamilyError::NoPair)?;
+        Ok(Pairs { compiled: system.compile()?, free: free.compile()? })
+    }
+
+    /// A regular solution for some generic parameters that `accept` is content with, from the random point of a seed
+    /// with this number; the same for the same arguments.
+    pub(super) fn from(
+        &self,
+        seed: u64,
+        number: u64,
+        beginning: &Beginning,
+        accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
+    ) -> Option<Fibre> {
+        let (n, m) = (self.compiled.variables(), self.compiled.parameters());
+        let mut z = Random::of(seed, Stream::Member(number)).normals(n + m);
+        z[..n].iter_mut().for_each(|x| *x *= beginning.size);
+        beginning.zero.iter().for_each(|&j| z[j] = Complex64::default());
+        if !gauss_newton(&self.free, &mut z) {
+            return None;
         }
         let parameters = z[n..].to_vec();
-        let refined = refiner.refine(&parameters, &z[..n]);
-        if refined.accuracy < 1e-12 && refined.condition < 1e8 && accept(&parameters, &refined.point) {
-            return Ok(Some(Fibre { is_partial: true, ..Fibre::new(parameters, n, refined.point) }));
-        }
+        let mut refiner = Refiner::new(&self.compiled);
+        let refined = refined(&mut refiner, &parameters, &z[..n]);
+        let regular = refined.accuracy < 1e-12 && refined.condition < 1e8 && refiner.is_regular(&parameters, &refined);
+        (regular && accept(&parameters, &refined.point))
+            .then(|| Fibre { is_partial: true, ..Fibre::new(parameters, n, refined.point) })
     }
-    Ok(None)
+
+    /// Regular solutions from other random points, some of them far out or near zero, and some with
+    /// unknowns that are zero: a family may have solutions of its own there.
+    pub(super) fn others(&self, seed: u64, accept: impl Fn(&[Complex64], &[Complex64]) -> bool) -> Vec<Fibre> {
+        let beginnings = SIZES.map(|size| Beginning { size, zero: Vec::new() }).into_iter();
+        let zeros = self.zeros().into_iter().map(|zero| Beginning { size: 1.0, zero });
+        let pairs = beginnings.map(|b| (b, PAIRS)).chain(zeros.map(|b| (b, ZERO_PAIRS))).flat_map(|(b, count)| {
+            let count = if b.size == 1.0 { count } else { FAR_PAIRS.min(count) };
+            (1..=count).map(move |k| (b.clone(), k))
+        });
+        let found = pairs.filter_map(|(beginning, k)| {
+            let seed = seed.wrapping_add(k);
+            (0..FEW_TRIES).find_map(|number| self.from(seed, number, &beginning, &accept))
+        });
+        found.collect()
+    }
+
+    /// The sets of unknowns that as many equations as they are lead to be zero: these equations hold
+    /// wherever the unknowns of the set are zero, and no others do.
+    fn zeros(&self) -> Vec<Vec<usize>> {
+        let n = self.compiled.variables();
+        let sets: Vec<Vec<usize>> = if n <= MANY_UNKNOWNS {
+            (1u32..1 << n).map(|set| (0..n).filter(|j| set >> j & 1 == 1).collect()).collect()
+        } else {
+            (0..n).map(|j| vec![j]).chain([(0..n).collect()]).collect()
+        };
+        let mut random = Random::of(0, Stream::Elsewhere);
+        let (x, p) = (random.normals(n), random.normals(self.compiled.parameters()));
+        let mut memory = self.compiled.memory(Isa::Portable);
+        let mut values = vec![Complex64::default(); n];
+        let holds = |set: &Vec<usize>| {
+            let mut x = x.clone();
+            set.iter().for_each(|&j| x[j] = Complex64::default());
+            self.compiled.values(&mut memory, &x, &p, &mut values);
+            values.iter().filter(|value| value.norm() <= f64::EPSILON).count() == set.len()
+        };
+        let mut holds = holds;
+        sets.into_iter().filter(|set| holds(set)).take(MOST_SETS).collect()
+    }
 }
 
 /// Moves `z` to a zero of fewer equations than unknowns; false if the corrections do not vanish.

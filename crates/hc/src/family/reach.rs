@@ -18,7 +18,7 @@ const UNIT_SIZES: std::ops::RangeInclusive<f64> = 1.0 / 64.0..=64.0;
 
 /// The natural size of numbers of this size, by which random numbers are drawn: one, unless they are much
 /// larger or smaller, as lengths in millimetres are.
-fn natural_size(size: f64) -> f64 {
+pub(super) fn natural_size(size: f64) -> f64 {
     if UNIT_SIZES.contains(&size) || !size.is_normal() { 1.0 } else { size }
 }
 

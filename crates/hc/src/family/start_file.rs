@@ -1,7 +1,7 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
 use super::fibre::Fibre;
-use super::search::{Monodromy, Stopped};
+use super::search::{Monodromy, Multiple, Stopped};
 use num_complex::Complex64;
 use poly::counted;
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,21 @@ pub struct StartFile {
     /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
     pub solutions: Vec<Vec<[f64; 2]>>,
     /// Deviation found by the [trace test](crate::Family::trace_test), if it was run. A deviation
-    /// of the size of rounding error shows that the fibre is whole.
+    /// of the size of rounding error shows that the orbits of the solutions are whole.
     #[serde(default)]
     pub trace_test: Option<f64>,
     /// Why the search ended: [`Stopped`](crate::family::Stopped) in words; empty if not stated.
     #[serde(default)]
     pub stopped: String,
+    /// The sizes of the [orbits](Monodromy::orbits); empty if not stated.
+    #[serde(default)]
+    pub orbits: Vec<usize>,
+    /// How other orbits are excluded: [`Stopped::others`]; empty if not stated.
+    #[serde(default)]
+    pub others: String,
+    /// Solutions that are multiple for all parameters, which are not among the others.
+    #[serde(default)]
+    pub multiple: Vec<Multiple>,
 }
 
 /// Why a start file cannot be used.
@@ -58,6 +67,9 @@ impl StartFile {
             solutions: (0..fibre.len()).map(|k| fibre.solution(k).iter().map(pair).collect()).collect(),
             trace_test,
             stopped: stopped.to_owned(),
+            orbits: Vec::new(),
+            others: String::new(),
+            multiple: Vec::new(),
         }
     }
 
@@ -77,11 +89,20 @@ impl StartFile {
         };
         let solutions: Vec<String> = self.solutions.iter().map(|s| format!("    {}", list(s))).collect();
         let trace = self.trace_test.filter(|t| t.is_finite()).map_or("null".to_owned(), |t| format!("{t:?}"));
+        let multiple = |m: &Multiple| {
+            let value: Vec<[f64; 2]> = m.value.iter().map(|z| [z.re, z.im]).collect();
+            format!("{{\"value\": {}, \"multiplicity\": {}}}", list(&value), m.multiplicity)
+        };
+        let multiple: Vec<String> = self.multiple.iter().map(multiple).collect();
         format!(
-            "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"trace_test\": {trace},\n  \"stopped\": {:?}\n}}\n",
+            "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"trace_test\": {trace},\n  \"stopped\": {:?},\n  \
+             \"orbits\": {:?},\n  \"others\": {:?},\n  \"multiple\": [{}]\n}}\n",
             list(&self.parameters),
             solutions.join(",\n"),
-            self.stopped
+            self.stopped,
+            self.orbits,
+            self.others,
+            multiple.join(", ")
         )
     }
 
@@ -116,14 +137,20 @@ impl Monodromy {
     /// The fibre in its file form.
     pub fn start_file(&self) -> StartFile {
         let count = self.fibre.len();
-        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), &self.stopped.to_string())
+        let trace_test = self.trace.and_then(|test| test.result(count));
+        StartFile {
+            orbits: self.orbits.clone(),
+            others: self.stopped.others().to_owned(),
+            multiple: self.multiple.clone(),
+            ..StartFile::new(&self.fibre, trace_test, &self.stopped.to_string())
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{StartFile, StartFileError};
-    use crate::family::Fibre;
+    use crate::family::{Fibre, Multiple};
     use crate::random::{Random, Stream};
     use proptest::prelude::proptest;
 
@@ -131,7 +158,13 @@ mod tests {
     fn is_read_back_bit_for_bit() {
         let mut random = Random::of(3, Stream::Member(0));
         let fibre = Fibre::new(random.normals(5), 2, random.normals(14));
-        let file = StartFile::new(&fibre, Some(1.5e-13), "roots reached");
+        let multiple = Multiple { value: random.normals(2), multiplicity: 3 };
+        let file = StartFile {
+            orbits: vec![5, 2],
+            others: "roots".to_owned(),
+            multiple: vec![multiple],
+            ..StartFile::new(&fibre, Some(1.5e-13), "roots reached")
+        };
         let again = StartFile::from_json(&file.to_json()).unwrap();
         assert_eq!(again, file);
         assert_eq!(again.fibre().unwrap(), fibre);
@@ -139,7 +172,10 @@ mod tests {
 
     #[test]
     fn only_what_says_so_is_complete() {
-        for (stopped, complete) in [("roots reached", true), ("trace", true), ("no progress", false), ("", false)] {
+        let words = [("roots reached", true), ("trace", true), ("start system", true), ("orbits whole", false)];
+        for (stopped, complete) in
+            words.into_iter().chain([("component whole", false), ("no progress", false), ("", false)])
+        {
             let file = StartFile::new(&Fibre::default(), None, stopped);
             assert_eq!(file.fibre().unwrap().is_partial, !complete, "{stopped}");
         }

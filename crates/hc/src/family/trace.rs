@@ -1,18 +1,23 @@
-//! The trace test: numerical proof that a fibre of a parameter family is whole.
+//! The trace test: numerical proof that the orbits of a fibre of a parameter family are whole.
 //!
 //! On a generic line `p + lambda v` through the parameter point, the solutions `(x, lambda)` form a
 //! curve. The fibre is the intersection of the curve with `lambda = 0`. The intersection with
 //! `(a x - c) lambda = tau` has instead the points of the fibre and further points near `a x = c`.
-//! Over parallel hypersurfaces of this kind (in `tau`), the sum of all points moves linearly if, and
-//! for a generic choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018,
-//! arXiv:1608.00540, for the bilinear case). Monodromy in the enlarged family finds the further
-//! points, starting from the fibre.
+//! Over parallel hypersurfaces of this kind (in `tau`), the sum of some points moves linearly if, and
+//! for a generic choice only if, they are all points of some irreducible components of the curve (Leykin,
+//! Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case). Monodromy in the enlarged family
+//! finds the further points, starting from the fibre. A component, an orbit of the monodromy group, of
+//! which the fibre has no point is not missed by the test: see [`Stopped`](super::Stopped).
+//!
+//! A solution that no parameter moves is a component of its own: `lambda = tau / (a x - c)` is linear. Such
+//! solutions are left out of the sum.
 
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::LoopSearch;
 use super::reach::{Reach, Sizes};
 use super::search::{MonodromyOptions, TraceTest};
 use super::sides::Searched;
+use super::still::Still;
 use super::symmetry::Symmetry;
 use crate::checkpoint::{Piece, Pieces};
 use crate::random::{Random, Stream};
@@ -22,7 +27,7 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
 
-/// The trace test of a fibre of `system`.
+/// The trace test of a fibre of `system`: whether it is a union of whole orbits.
 ///
 /// The line and the hypersurface move by the natural sizes of parameters and unknowns, unless the family
 /// looks simpler on that scale than it is. If the test shows nothing, they move as far as single
@@ -35,7 +40,14 @@ pub(super) fn trace_test(
 ) -> Result<TraceTest, CompileError> {
     let Some(enlarged) = enlarge(system)? else { return Ok(FAILED) };
     let searched = Searched { system: &enlarged, enlarged: true };
-    let Reach { natural, wide, hidden } = Reach::new(&system.compile()?, fibre);
+    let compiled = system.compile()?;
+    let still = Still::new(&compiled, &fibre.parameters);
+    let (moving, apart) = still.parted(fibre);
+    let apart = apart.len() / fibre.dimension.max(1);
+    if moving.is_empty() {
+        return Ok(TraceTest { deviation: 0.0, fibre: apart, further: 0, complete: true });
+    }
+    let Reach { natural, wide, hidden } = Reach::new(&compiled, &moving);
     let all = match (wide == natural, hidden) {
         (true, _) => vec![natural],
         (false, false) => vec![natural, wide],
@@ -43,12 +55,12 @@ pub(super) fn trace_test(
     };
     let mut test = FAILED;
     for (sizes, part) in all.iter().zip((0..).step_by(3)) {
-        test = on_sizes(&searched, fibre, sizes, options, pieces.part(part));
-        if test.passed(fibre.len()) {
+        test = on_sizes(&searched, &moving, &still, sizes, options, pieces.part(part));
+        if test.passed(moving.len()) {
             break;
         }
     }
-    Ok(test)
+    Ok(TraceTest { fibre: test.fibre + apart, ..test })
 }
 
 /// The outcome of a test without a result.
@@ -58,6 +70,7 @@ const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, furthe
 fn on_sizes<E: Evaluate>(
     enlarged: &Searched<'_, E>,
     fibre: &Fibre,
+    still: &Still<'_, E>,
     sizes: &Sizes,
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
@@ -102,8 +115,9 @@ fn on_sizes<E: Evaluate>(
     let Some(start) = moved(pieces, 0, &on_fibre, 1.0) else { return FAILED };
     let mut search = options.clone();
     search.roots = None;
+    let (is_still, symmetry) = (|z: &[Complex64]| still.is(&z[..n]), &Symmetry::default());
     let filled =
-        LoopSearch { searched: enlarged, accept: &|_, _| true, symmetry: &Symmetry::default(), options: &search };
+        LoopSearch { searched: enlarged, accept: &|_, _| true, is_still: &is_still, symmetry, options: &search };
     let filled = filled.fill(&start, pieces.part(1)).fibre;
 
     let ends = pieces.part(2);

@@ -5,6 +5,18 @@ pub(crate) mod families {
     /// Values of this size and below count as zero where a family demands that something does not
     /// vanish.
     pub(crate) const VANISHES: f64 = 1e-9;
+    /// The same at solutions that are singular, which are known to fewer digits.
+    pub(crate) const VANISHES_SINGULAR: f64 = 1e-5;
+    /// A solution for other parameters may be one for all if its residual there is no more than this, and is one if
+    /// Newton's method moves it by no more than this share, some units in the last place.
+    pub(crate) const STILL_RESIDUAL: f64 = 1e-8;
+    pub(crate) const STILL_MOVED: f64 = 1e-14;
+    /// Coordinates below this share of the largest, or of one, are tried as zero; the others may then move by this
+    /// share of their sizes.
+    pub(crate) const TINY: f64 = 1e-6;
+    pub(crate) const NEARBY: f64 = 1e-3;
+    /// A first solution that Newton's method moves by more than this share is none.
+    pub(crate) const FIRST_MOVED: f64 = 0.1;
     /// A factor that must not vanish has vanished at the end of a path if a change of the coordinates by this
     /// share of the largest would make it vanish.
     pub(crate) const DEGENERATE: f64 = 1e-12;

@@ -8,6 +8,7 @@ mod components;
 mod conics;
 mod generators;
 mod mixed_volume;
+mod orbits;
 mod runs;
 mod scales;
 mod singular;

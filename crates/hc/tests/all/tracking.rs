@@ -305,11 +305,17 @@ fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
 fn monodromy_without_a_known_count_says_why_it_stopped() {
     let (family, _) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
     let start = family.find_pair(3).unwrap();
-    for (trace_test, stopped) in [(true, Stopped::Trace), (false, Stopped::NoProgress)] {
-        let options = MonodromyOptions::new().trace_test(trace_test);
+    let cases = [
+        (true, false, Stopped::Trace),
+        (false, false, Stopped::StartSystem),
+        (true, true, Stopped::ComponentWhole),
+        (false, true, Stopped::NoProgress),
+    ];
+    for (trace_test, only_component, stopped) in cases {
+        let options = MonodromyOptions::new().trace_test(trace_test).only_component(only_component);
         let found = family.complete(&start, &options).unwrap();
         assert_eq!((found.stopped, found.fibre.len(), found.trace.is_some()), (stopped, 2, trace_test));
-        assert_eq!(found.stopped.is_complete(), trace_test);
+        assert_eq!(found.stopped.is_complete(), !only_component);
         assert_eq!(found.start_file().stopped, stopped.to_string());
     }
 }

@@ -170,6 +170,9 @@ class Fibre:
     points: NDArray[np.complex128]
     trace_test: float | None
     stopped: str
+    orbits: list[int]
+    others: str
+    multiple: list[tuple[NDArray[np.complex128], int]]
     def __init__(self, text: str) -> None: ...
     @property
     def complete(self) -> bool: ...
@@ -222,6 +225,7 @@ class Family:
         roots: int | None = None,
         patience: int | None = None,
         trace: bool = True,
+        only_component: bool = False,
         threads: int | None = None,
         progress: _Progress = True,
     ) -> Fibre: ...

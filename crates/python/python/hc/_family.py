@@ -88,9 +88,17 @@ class Fibre:
     points : ndarray of complex, shape (roots, n)
         The solutions.
     trace_test : float or None
-        Deviation found by the trace test: rounding error shows that the solutions are all.
+        Deviation found by the trace test: rounding error shows that the orbits of the solutions are whole.
     stopped : str
-        Why the search ended: `roots reached`, `trace`, `no progress`, `too many solutions` or `interrupted`.
+        Why the search ended: `roots reached`, `trace` (the trace test has passed, and a start system has led to no other
+        solution), `start system` (that alone), `orbits whole` (the trace test alone), `component whole` (no other orbit was
+        sought), `no progress`, `too many solutions` or `interrupted`.
+    orbits : list of int
+        The sizes of the orbits, largest first: solutions that loops in the parameters have joined.
+    others : str
+        How other orbits are excluded: `roots`, `start system`, `not excluded` or `not sought`.
+    multiple : list of (ndarray of complex, shape (n,), int)
+        Solutions that are multiple for all parameters, with their multiplicities; they are not among the points.
     """
 
     def __init__(self, text):
@@ -108,11 +116,16 @@ class Fibre:
         self.parameters = pairs.view(complex)[..., 0]
         self.trace_test = data.get("trace_test")
         self.stopped = data.get("stopped", "")
+        self.orbits = data.get("orbits", [])
+        self.others = data.get("others", "")
+        self.multiple = [
+            (np.array(each["value"], dtype=float).view(complex)[..., 0], each["multiplicity"]) for each in data.get("multiple", [])
+        ]
 
     @property
     def complete(self):
-        """Whether a known number of roots or the trace test shows that these are all solutions."""
-        return self.stopped in ("roots reached", "trace")
+        """Whether it is known that these are all regular solutions: by their number, or by a start system."""
+        return self.stopped in ("roots reached", "trace", "start system")
 
     def to_json(self):
         """The text of a start file, as `hc monodromy` writes it."""
@@ -272,8 +285,12 @@ class Family:
             family.compile()
         return family
 
-    def monodromy(self, *, seed=0, first=None, roots=None, patience=None, trace=True, threads=None, progress=True):
+    def monodromy(
+        self, *, seed=0, first=None, roots=None, patience=None, trace=True, only_component=False, threads=None, progress=True
+    ):
         """Find all solutions for one generic parameter point, by loops in the parameters from a single one.
+
+        Solutions that no loop joins to it are found by a start system, where that takes no more paths than the loops.
 
         Parameters
         ----------
@@ -286,7 +303,9 @@ class Family:
         patience : int, optional
             Loops without a new solution after which the search ends. Default 8.
         trace : bool
-            Whether the trace test shows that the solutions are all, where their number is not known.
+            Whether the trace test shows that orbits are whole, where the number of solutions is not known.
+        only_component : bool
+            Whether only the solutions are sought that loops join to the first.
         threads, progress
             As in `hc.solve`.
 
@@ -310,6 +329,7 @@ class Family:
             integer("roots", roots),
             integer("patience", patience),
             bool(trace),
+            bool(only_component),
             native,
             threads=threads,
             progress=progress,
