@@ -110,11 +110,11 @@ fn summary(found: &Monodromy, deviation: Option<f64>) -> String {
         (None, None) => String::new(),
     };
     format!(
-        "{} after {} and {}; at most {} of {of_size} {}{more}; stopped: {}{trace}; other orbits: {}",
+        "{} after {} and {}; {} of {of_size} {}{more}; stopped: {}{trace}; other orbits: {}",
         counted(count, "solution"),
         counted(found.loops, "loop"),
         counted(found.paths, "path"),
-        counted(orbits, "orbit"),
+        if orbits == 1 { "1 orbit".to_owned() } else { format!("at most {orbits} orbits") },
         sizes.join(", "),
         found.stopped,
         match found.stopped.others() {
@@ -135,8 +135,8 @@ fn judged(found: &Monodromy, roots: Option<usize>) -> Result<(), Failure> {
         (Some(_), _) | (None, Stopped::ComponentWhole) => Ok(()),
         (None, stopped) if stopped.is_complete() => Ok(()),
         (None, Stopped::OrbitsWhole) => Err(Failure::Undetermined(
-            "these orbits are whole, but others are not excluded: a start system has too many paths, or has lost some; \
-             state the number of `roots`, if it is known, or ask for this orbit alone (--only-component)"
+            "these orbits are whole, but others are not excluded: a start system has too many paths, has lost some, or \
+             does not exist; state the number of `roots`, if it is known, or ask for this orbit alone (--only-component)"
                 .to_owned(),
         )),
         (None, _) => Err(Failure::Undetermined(

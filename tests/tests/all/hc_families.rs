@@ -228,6 +228,55 @@ fn special_members_are_solved_like_any_system() {
     assert!(has(&reports[1], &[1.5, 2.0], 1e-12) && has(&reports[2], &[2.0, 1.0], 1e-12));
 }
 
+/// Lines that cross, a quotient, which has no start system, and squares with a double point at the origin.
+#[test]
+fn orbits_are_found_or_said_not_to_be_excluded() {
+    let directory = tempfile::tempdir().expect("directory");
+    let write = |name: &str, content: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        text(&path).to_owned()
+    };
+    let start = text(&directory.path().join("start.json")).to_owned();
+    let search = |family: &str, more: &[&str]| {
+        let output = run("hc", &[&["monodromy", family, "--output", &start], more].concat());
+        let found = std::fs::read_to_string(&start).ok().and_then(|json| serde_json::from_str(&json).ok());
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), found.unwrap_or(Value::Null), error)
+    };
+    let lines = write("lines.txt", "parameters: a b\n(x - a)*(x - b - 5)");
+    let (status, found, error) = search(&lines, &[]);
+    assert!(status == Some(0) && error.contains("2 orbits of sizes 1, 1; stopped: trace"), "{error}");
+    assert_eq!((&found["orbits"], &found["others"]), (&json!([1, 1]), &json!("start system")));
+    let (status, found, error) = search(&lines, &["--only-component"]);
+    assert!(status == Some(0) && error.contains("1 orbit of size 1; stopped: component whole"), "{error}");
+    assert_eq!((found["solutions"].as_array().map(Vec::len), &found["others"]), (Some(1), &json!("not sought")));
+
+    let quotient = write("quotient.txt", "parameters: a b c\nx/y - a\n(y^2 - b)*(y - c)");
+    let (status, found, error) = search(&quotient, &[]);
+    assert!(status == Some(1) && error.contains("others are not excluded"), "{error}");
+    assert_eq!((&found["stopped"], &found["others"]), (&json!("orbits whole"), &json!("not excluded")));
+
+    let squares = write("squares.txt", "parameters: a b\nx^2 - a*x\ny^2 - b*x");
+    let (status, found, error) = search(&squares, &[]);
+    assert!(status == Some(0) && error.contains("1 solution of multiplicity 2"), "{error}");
+    assert_eq!(found["multiple"], json!([{ "value": [[0.0, 0.0], [0.0, 0.0]], "multiplicity": 2 }]));
+    let target = write("target.json", r#"{"parameters": [2, 1]}"#);
+    let track = |more: &[&str]| {
+        let output = run("hc", &[&["track", &squares, "--start", &start, "--target", &target], more].concat());
+        assert!(output.status.success());
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    assert!(track(&[]).contains("1 solution of multiplicity 2"));
+    let report: Value = serde_json::from_str(&track(&["--json", "-"])).expect("JSON");
+    assert_eq!((report["solutions"].as_array().map(Vec::len), &report["untracked"]), (Some(2), &json!([2])));
+
+    let circle = write("circle.txt", "parameters: a b\nx^2 + y^2 = a\nx*y = b");
+    let pair = write("pair.json", r#"{"parameters": [[5, 0], [2, 0]], "solutions": [[[1, 0], [3, 0]]]}"#);
+    let (status, _, error) = search(&circle, &["--seed-pair", &pair]);
+    assert!(status == Some(2) && error.contains("pair.json: first solution 1 is none"), "{error}");
+}
+
 #[test]
 fn limits_of_effort_are_said() {
     let directory = tempfile::tempdir().expect("directory");

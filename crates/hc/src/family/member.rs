@@ -9,6 +9,7 @@ use crate::solve::{Solution, SolveOptions};
 use crate::start::bezout_number;
 use crate::tolerances::families;
 use num_complex::Complex64;
+use poly::System;
 use serde::{Deserialize, Serialize};
 
 /// So many paths are always worth it; never more than so many.
@@ -16,6 +17,8 @@ const FEW: u64 = 64;
 const MOST: u64 = 10_000;
 /// The largest product of degrees of members whose mixed volume is computed.
 const LARGEST: u64 = 10_000_000;
+/// Steps of a path, at most, as in loops.
+const MAX_STEPS: usize = 2_000;
 
 /// The solutions of a member.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,17 +42,30 @@ impl Family {
     /// The member with these parameters, unless that takes more than so many paths, or has no start system.
     pub(super) fn member(&self, parameters: &[Complex64], most: u64, seed: u64, monitor: &Monitor) -> Option<Member> {
         let system = self.system().at(parameters).ok()?;
-        let degrees = system.degrees_as_written()?;
-        let bezout = bezout_number(&degrees)?;
-        if bezout > LARGEST {
+        if bezout_number(&system.degrees_as_written()?)? > LARGEST {
             return None;
         }
-        let outer = monitor.clone();
+        let found = self.member_with(&system, parameters, &quick(most).seed(seed), monitor)?;
+        if found.whole || found.paths as u64 > FEW {
+            return Some(found);
+        }
+        self.member_with(&system, parameters, &SolveOptions::new().max_paths(most).seed(seed), monitor)
+    }
+
+    /// The member solved with these options.
+    fn member_with(
+        &self,
+        system: &System,
+        parameters: &[Complex64],
+        options: &SolveOptions,
+        monitor: &Monitor,
+    ) -> Option<Member> {
+        let (outer, most) = (monitor.clone(), options.max_paths);
+        // Mixed cells are not counted to the end where they are too many.
         let limited = Monitor::asking(move |progress| {
             outer.is_cancelled() || (progress.stage == Stage::MixedCells && progress.counted > most)
         });
-        let options = SolveOptions::new().seed(seed).max_paths(most);
-        let found = Run::new().watched(&limited).solve(&system, &options).ok().filter(|found| !found.interrupted)?;
+        let found = Run::new().watched(&limited).solve(system, options).ok().filter(|found| !found.interrupted)?;
         let accepted = |s: &&Solution| {
             let tolerance = if s.singular { families::VANISHES_SINGULAR } else { families::VANISHES };
             self.accepts_within(parameters, &s.value, tolerance)
@@ -67,4 +83,12 @@ impl Family {
             multiple,
         })
     }
+}
+
+/// Settings with which paths take about as much work as those of loops. Those of degenerate members, most of which
+/// go to infinity or to components, could take a hundred times as much.
+fn quick(most: u64) -> SolveOptions {
+    let mut options = SolveOptions::new().max_paths(most).restarts(0);
+    (options.paths.tracker.max_steps, options.paths.retries) = (MAX_STEPS, 1);
+    options
 }
