@@ -158,17 +158,20 @@ impl<const D: usize> Test<'_, D> {
             }
             let fault = |kind, from| Fault::new(receiver, kind, from);
             let mut best = [(f64::NEG_INFINITY, 0); 2];
+            let before = self.sums(row.iter());
+            let mut after = self.sums(row.iter().rev());
+            after.reverse();
             for at in SIDE..(row.len() + 1).saturating_sub(SIDE) {
                 check(self.monitor)?;
                 let from = self.kept.all()[row[at]].transmitter;
-                for (best, power) in best.iter_mut().zip([0, 1]) {
-                    let score = self.score(&row[..at], power) + self.score(&row[at..], power);
+                let scores = from_fn(|power| before[at].explained()[power] + after[at].explained()[power]);
+                for (best, score) in best.iter_mut().zip::<[f64; 2]>(scores) {
                     if score > best.0 {
                         *best = (score, from);
                     }
                 }
             }
-            let whole = self.score(row, 0).max(best[0].0).max(best[1].0);
+            let whole = before[row.len()].explained()[0].max(best[0].0).max(best[1].0);
             all.push((whole, fault(ReceiverErrorKind::Delay, 0)));
             all.push((whole, fault(ReceiverErrorKind::Drift, 0)));
             for (best, kind) in best.into_iter().zip([ReceiverErrorKind::Jump, ReceiverErrorKind::Move]) {
@@ -183,18 +186,15 @@ impl<const D: usize> Test<'_, D> {
         Ok(all.into_iter().map(|(_, fault)| fault).collect())
     }
 
-    /// How much of the squares of the residuals in some cells of a receiver one length explains, or
-    /// a motion of the receiver.
-    fn score(&self, row: &[usize], power: usize) -> f64 {
-        let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; D], [[0.0; D]; D]);
-        for &k in row {
+    /// Sums over none of the measurements of a receiver, the first, the first two, and so on to all.
+    fn sums<'k>(&self, row: impl Iterator<Item = &'k usize>) -> Vec<Sums<D>> {
+        let none = Sums { sum: 0.0, square: 0.0, g: [0.0; D], h: [[0.0; D]; D] };
+        let next = |sums: &mut Sums<D>, &k: &usize| {
             let (p, u) = (self.kept.all()[k].precision, self.projection.rays()[k]);
-            let v = self.rest[k] * p;
-            (sum, square) = (sum + v, square + p * p);
-            g = from_fn(|a| g[a] + u[a] * v);
-            h = from_fn(|a| from_fn(|b| h[a][b] + p * p * u[a] * u[b]));
-        }
-        if power == 0 { sum * sum / square } else { solve_symmetric(&h, g).map_or(0.0, |s| points::dot(s, g)) }
+            *sums = sums.and(self.rest[k] * p, p * p, u);
+            Some(*sums)
+        };
+        std::iter::once(none).chain(row.scan(none, next)).collect()
     }
 
     /// The gain of taking an error into the model, with its size, and the parts of its columns that
@@ -270,6 +270,36 @@ impl<const D: usize> Test<'_, D> {
             *x -= part * y;
         }
         self.taken.push(column);
+    }
+}
+
+/// Sums over measurements of a receiver, by which errors of these are fitted to the residuals.
+#[derive(Clone, Copy)]
+struct Sums<const D: usize> {
+    /// Of the residuals.
+    sum: f64,
+    /// Of the squares of the precisions.
+    square: f64,
+    /// Gradient and normal equations of a motion of the receiver.
+    g: [f64; D],
+    h: [[f64; D]; D],
+}
+
+impl<const D: usize> Sums<D> {
+    /// With one more: the residual times the precision, the square of that, and the unit vector to the transmitter.
+    fn and(&self, v: f64, square: f64, u: [f64; D]) -> Self {
+        Sums {
+            sum: self.sum + v,
+            square: self.square + square,
+            g: from_fn(|a| self.g[a] + u[a] * v),
+            h: from_fn(|a| from_fn(|b| self.h[a][b] + square * u[a] * u[b])),
+        }
+    }
+
+    /// How much of the squares of the residuals one length explains, and a motion of the receiver.
+    fn explained(&self) -> [f64; 2] {
+        let motion = solve_symmetric(&self.h, self.g).map_or(0.0, |s| points::dot(s, self.g));
+        [self.sum * self.sum / self.square, motion]
     }
 }
 
