@@ -12,8 +12,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, Node, ReceiverDelays,
-    Unfinished, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Emissions, Errors, KnownDistance, MeasuredPosition, Node,
+    ReceiverDelays, Unfinished, calibrate_with,
 };
 
 /// Settings as Python gives them.
@@ -29,6 +29,7 @@ pub(crate) struct Settings {
     positions: Vec<(usize, Vec<Option<f64>>, f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
+    ranges: bool,
     errors: String,
     estimate_speed: bool,
     seed: u64,
@@ -63,6 +64,7 @@ impl Settings {
                 return Err(Failure::Input(format!("receiver_delays must be none, auto or all, not {other:?}")));
             }
         };
+        options.emissions = Emissions::of_ranges(self.ranges);
         options.errors = match self.errors.as_str() {
             "symmetric" => Errors::Symmetric,
             "one-sided" => Errors::OneSided,

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
 use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
-use tdoa::{Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
+use tdoa::{Emissions, Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
 static IN_PLANE: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
@@ -182,6 +182,7 @@ pub(crate) struct Wanted {
     detour_size: f64,
     fault: Option<(String, f64)>,
     delays: f64,
+    ranges: bool,
     seed: u64,
 }
 
@@ -222,6 +223,7 @@ fn made<'py, const D: usize>(py: Python<'py>, wanted: &Wanted) -> Result<Bound<'
     (options.noise, options.missing, options.hearing) = (wanted.noise, wanted.missing, wanted.hearing);
     (options.outliers, options.outlier_size) = (wanted.outliers, wanted.outlier_size);
     (options.detours, options.detour_size, options.delays) = (wanted.detours, wanted.detour_size, wanted.delays);
+    options.emissions = Emissions::of_ranges(wanted.ranges);
     let made = py.detach(|| tdoa::simulate(&options)).map_err(Failure::input)?;
     let (m, n) = (options.receivers, options.transmitters);
     let result = PyDict::new(py);

@@ -434,3 +434,12 @@ def test_tables_of_other_people(tmp_path):
     for wrong in ({"columns": {"who": "r"}}, {"columns": ["r"]}, {"decimal_mark": ";"}):
         with pytest.raises(tdoa.InputError):
             tdoa.read(io.StringIO(text), **samples, **wrong)
+
+
+def test_ranges_have_no_offsets():
+    made = tdoa.simulate(6, 12, noise=0.01, ranges=True, seed=4)
+    assert not made.offsets.any()
+    found = tdoa.calibrate(made.pseudoranges, ranges=True)
+    assert found.unique and not found.offsets.any() and found.data["emissions"] == "known"
+    with pytest.raises(tdoa.InputError, match="below zero"):
+        tdoa.calibrate(tdoa.simulate(noise=0.01).pseudoranges, ranges=True)

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cli::files::check_directory;
-use tdoa::{Layout, Pseudoranges, ReceiverFault, SimulateOptions, simulate};
+use tdoa::{Emissions, Layout, Pseudoranges, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
 use crate::output;
@@ -67,6 +67,9 @@ pub(crate) struct Arguments {
     /// Standard deviation of a constant delay of each receiver, metres.
     #[arg(long, default_value_t = 0.0)]
     delays: f64,
+    /// Makes distances, as of transmitters whose send times are known: offsets are zero.
+    #[arg(long)]
+    ranges: bool,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -127,6 +130,7 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     options.candidates = arguments.candidates;
     options.fault = arguments.fault.as_deref().map(fault).transpose()?;
     options.delays = arguments.delays;
+    options.emissions = Emissions::of_ranges(arguments.ranges);
     options.seed = arguments.seed;
     let unit = unit_of(&arguments.units)?;
     let simulation = crate::on_threads(arguments.threads, || simulate(&options))?.map_err(Failure::unusable)?;

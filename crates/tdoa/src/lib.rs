@@ -56,6 +56,7 @@ mod candidates;
 mod cells;
 pub mod degeneracy;
 mod duplicates;
+mod emissions;
 mod flatness;
 mod generated;
 #[cfg(feature = "pictures")]
@@ -86,6 +87,7 @@ pub use calibrate::{
     SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate, calibrate_with,
 };
 pub use cells::Cells;
+pub use emissions::Emissions;
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;

@@ -95,6 +95,8 @@ pub(crate) struct Observations<const D: usize = 2> {
     held: Vec<bool>,
     pins: Vec<Pin>,
     other_unknowns: usize,
+    /// Whether they are distances: no transmitter has an offset.
+    are_ranges: bool,
 }
 
 impl<const D: usize> Observations<D> {
@@ -113,7 +115,8 @@ impl<const D: usize> Observations<D> {
         entries.sort_by_key(|o| o.transmitter);
         let first = |j: usize| entries.partition_point(|o| o.transmitter < j);
         let columns = (0..=measured.transmitters()).map(first).collect();
-        Observations::of(measured.receivers(), entries, columns)
+        let all = Observations::of(measured.receivers(), entries, columns);
+        Observations { are_ranges: measured.are_ranges(), ..all }
     }
 
     /// All candidates of all measured cells, as if each were a measurement: at most one of a cell is right, the
@@ -144,6 +147,7 @@ impl<const D: usize> Observations<D> {
             held: vec![false; m],
             pins: Vec::new(),
             other_unknowns: 0,
+            are_ranges: false,
         }
     }
 
@@ -155,10 +159,7 @@ impl<const D: usize> Observations<D> {
             entries.extend(self.of_transmitter(j).iter().filter(|o| keep(o)).copied());
             columns.push(entries.len());
         }
-        Observations::of(self.receivers, entries, columns)
-            .holding(&self.held)
-            .pinned(&self.pins)
-            .with_other_unknowns(self.other_unknowns)
+        self.like(Observations::of(self.receivers, entries, columns).holding(&self.held))
     }
 
     /// These measurements less a length each, metres.
@@ -183,10 +184,13 @@ impl<const D: usize> Observations<D> {
             columns.push(entries.len());
         }
         let held: Vec<bool> = self.held.iter().copied().chain([false]).collect();
-        Observations::of(self.receivers + 1, entries, columns)
-            .holding(&held)
-            .pinned(&self.pins)
-            .with_other_unknowns(self.other_unknowns)
+        self.like(Observations::of(self.receivers + 1, entries, columns).holding(&held))
+    }
+
+    /// Measurements of the same kind with the same pins.
+    fn like(&self, others: Self) -> Self {
+        let others = others.pinned(&self.pins).with_other_unknowns(self.other_unknowns);
+        Observations { are_ranges: self.are_ranges, ..others }
     }
 
     /// These measurements, each with a share of its information.
@@ -244,6 +248,17 @@ impl<const D: usize> Observations<D> {
         }
     }
 
+    /// Whether they are distances: no transmitter has an offset.
+    pub(crate) fn are_ranges(&self) -> bool {
+        self.are_ranges
+    }
+
+    /// What a measurement says of its transmitter's offset: `x`, and nothing if it is a distance.
+    #[inline]
+    pub(crate) fn of_offset(&self, x: f64) -> f64 {
+        if self.are_ranges { 0.0 } else { x }
+    }
+
     /// All of them, transmitter by transmitter.
     pub(crate) fn all(&self) -> &[Observation] {
         &self.entries
@@ -264,15 +279,16 @@ impl<const D: usize> Observations<D> {
         self.entries.len()
     }
 
-    /// Number of unknowns of the network: positions and offsets, up to a rigid motion or without the
+    /// Number of unknowns of the network: positions, and offsets unless these are distances, up to a rigid motion or without the
     /// receivers that are held and less the coordinates that were measured. Held receivers leave the
     /// rotations about them: one of them one in the plane and three in space, two one in space.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
         let loose = D.saturating_sub(held);
         let measured = self.pins.len() + if self.pins.is_empty() { 0 } else { self.rigid_motions() };
+        let placed = if self.are_ranges { D } else { D + 1 };
         let known = D * held + measured.max(loose * (loose + 1) / 2);
-        (D * self.receivers + (D + 1) * self.transmitters).saturating_sub(known) + self.other_unknowns
+        (D * self.receivers + placed * self.transmitters).saturating_sub(known) + self.other_unknowns
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Pseudoranges {
     transmitter_names: Vec<String>,
     /// Whether the receivers' names were given, not counted.
     receivers_named: bool,
+    /// Whether the values are distances: no transmitter has an offset.
+    are_ranges: bool,
 }
 
 impl Pseudoranges {
@@ -86,6 +88,7 @@ impl Pseudoranges {
             receiver_names: (1..=cells.rows()).map(|i| format!("r{i}")).collect(),
             transmitter_names: (1..=cells.columns()).map(|j| format!("s{j}")).collect(),
             receivers_named: false,
+            are_ranges: false,
             sigmas: None,
             candidates: None,
             cells,
@@ -209,6 +212,16 @@ impl Pseudoranges {
         }
         self.candidates = (!all.is_empty()).then(|| Cells::new(self.cells.rows(), self.cells.columns(), all));
         Ok(self.choosing(|_, _, _| 0))
+    }
+
+    /// This matrix as one of distances.
+    pub(crate) fn into_ranges(self) -> Pseudoranges {
+        Pseudoranges { are_ranges: true, ..self }
+    }
+
+    /// Whether the values are distances: no transmitter has an offset.
+    pub(crate) fn are_ranges(&self) -> bool {
+        self.are_ranges
     }
 
     /// Number of receivers (rows).
@@ -351,6 +364,7 @@ impl Pseudoranges {
             receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
+            are_ranges: self.are_ranges,
             cells: self.cells.select(receivers, transmitters),
             sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),
             candidates: (self.candidates.as_ref().map(|all| all.select(receivers, transmitters)))

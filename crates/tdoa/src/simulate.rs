@@ -12,6 +12,7 @@ use thiserror::Error;
 
 pub use layout::Layout;
 
+use crate::emissions::Emissions;
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::{PseudorangeError, Pseudoranges};
@@ -61,6 +62,8 @@ pub struct SimulateOptions<const D: usize = 2> {
     pub fault: Option<ReceiverFault>,
     /// Standard deviation of a constant error of each receiver, metres. Default 0.
     pub delays: f64,
+    /// Whether transmitters have offsets. Default [`Emissions::Unknown`]: they do.
+    pub emissions: Emissions,
     /// Seed of the random numbers. Default 0.
     pub seed: u64,
 }
@@ -88,6 +91,7 @@ impl<const D: usize> SimulateOptions<D> {
             candidates: 1,
             fault: None,
             delays: 0.0,
+            emissions: Emissions::Unknown,
             seed: 0,
         }
     }
@@ -164,7 +168,10 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
         return Err(PseudorangeError::Empty { receivers: m, transmitters: n }.into());
     }
     let mut rng = Pcg64Mcg::seed_from_u64(options.seed);
-    let network = options.layout.network(m, n, &mut rng);
+    let mut network = options.layout.network(m, n, &mut rng);
+    if options.emissions == Emissions::Known {
+        network.offsets.fill(0.0);
+    }
     let mut values = network.pseudoranges();
     for value in &mut values {
         *value += options.noise * rng.sample::<f64, _>(StandardNormal);

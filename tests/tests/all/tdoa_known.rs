@@ -232,3 +232,29 @@ fn unusable_knowledge_is_refused() {
     distances("r1,r1,4\n", &["makes no sense"]);
     distances("a,b,distance\n", &["no distances"]);
 }
+
+/// Distances of a network, with and without the knowledge that transmitters have no offsets.
+#[test]
+fn ranges_have_no_offsets() {
+    let (directory, file) = simulated("--ranges --receivers 6 --transmitters 12 --noise 0.01 --seed 4");
+    let truth = directory.path().join("receivers.csv");
+    let error = |options: &[&str]| {
+        let (found, message, status) = calibrate(&[&[text(&file), "--truth", text(&truth)], options].concat());
+        assert_eq!(status, Some(0), "{message}");
+        let found = found.expect("JSON");
+        (found["truth"]["receiver_rms"].as_f64().expect("number"), found)
+    };
+    let (with_offsets, found) = error(&[]);
+    assert_eq!(found["emissions"], "unknown");
+    let (without, found) = error(&["--ranges"]);
+    assert_eq!(found["emissions"], "known");
+    assert!(found["offsets"].as_array().expect("list").iter().all(|offset| offset == 0.0));
+    // Standard deviations of the distances are 1 cm, and each receiver has twelve.
+    assert!(without < 0.01 && without < with_offsets, "{without} {with_offsets}");
+
+    let (_, message, status) = calibrate(&[text(&file), "--ranges", "--receiver-delays", "all"]);
+    assert!(status == Some(2) && message.contains("cannot be calibrated yet"), "{message}");
+    let (_directory, file) = simulated("--receivers 6 --transmitters 12 --noise 0.01");
+    let (_, message, status) = calibrate(&[text(&file), "--ranges"]);
+    assert!(status == Some(2) && message.contains("below zero"), "{message}");
+}

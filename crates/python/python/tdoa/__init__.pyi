@@ -181,6 +181,7 @@ def calibrate(
     threads: int | None = None,
     progress: _Progress = True,
     receiver_delays: Literal["none", "auto", "all"] = "none",
+    ranges: bool = False,
     errors: Literal["symmetric", "one-sided"] = "symmetric",
     distances: Iterable[tuple[str | int, str | int, float]] | None = None,
     estimate_speed: bool = False,
@@ -216,6 +217,7 @@ def simulate(
     detour_size: float = 1.0,
     fault: tuple[Literal["delay", "drift", "move"], float] | None = None,
     delays: float = 0.0,
+    ranges: bool = False,
     seed: int = 0,
 ) -> Simulation: ...
 def cramer_rao(

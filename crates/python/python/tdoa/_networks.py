@@ -136,6 +136,7 @@ def calibrate(
     threads=None,
     progress=True,
     receiver_delays="none",
+    ranges=False,
     errors="symmetric",
     distances=None,
     estimate_speed=False,
@@ -175,6 +176,9 @@ def calibrate(
     receiver_delays : {"none", "auto", "all"}
         What is done about receivers whose measurements are all too long or too short: told, estimated for those that show it, or
         estimated for all.
+    ranges : bool
+        Whether the measurements are distances, such as two-way ranges or arrival times less known send times: transmitters have no
+        offsets then. Not together with `receiver_delays` "all".
     errors : {"symmetric", "one-sided"}
         How measurements are wrong that are wrong by more than noise: too long or too short alike, or nearly all too long, as where
         sound or radio comes by a detour. Not together with `receiver_delays`.
@@ -229,6 +233,7 @@ def calibrate(
         "positions": measured,
         "distances": _distances(distances, receivers, count),
         "receiver_delays": text("receiver_delays", receiver_delays),
+        "ranges": bool(ranges),
         "errors": text("errors", errors),
         "estimate_speed": bool(estimate_speed),
         "seed": seeded(seed),
@@ -432,6 +437,7 @@ def simulate(
     detour_size=1.0,
     fault=None,
     delays=0.0,
+    ranges=False,
     seed=0,
 ):
     """A random network in the plane or in space and its measurements, the same for the same arguments on any machine.
@@ -460,6 +466,8 @@ def simulate(
         An error of the first receiver: ("delay" or "drift" or "move", metres).
     delays : float
         Standard deviation of a constant error of each receiver, metres.
+    ranges : bool
+        Whether distances are made: offsets are zero.
     seed : int
         Seed of the random numbers.
 
@@ -496,6 +504,7 @@ def simulate(
         "detour_size": number("detour_size", detour_size),
         "fault": kind,
         "delays": number("delays", delays),
+        "ranges": bool(ranges),
         "seed": seeded(seed),
     }
     missing_ones = [name for name, value in wanted.items() if value is None and name not in ("size", "hearing", "fault")]

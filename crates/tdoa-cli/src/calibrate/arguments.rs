@@ -48,6 +48,10 @@ pub(crate) struct Arguments {
     /// moved receivers too), or estimated for all, as where clocks were started apart (all).
     #[arg(long, value_enum, default_value = "none")]
     pub(super) receiver_delays: Delays,
+    /// Takes the measurements as distances, such as two-way ranges or arrival times less known send times:
+    /// transmitters have no offsets.
+    #[arg(long)]
+    pub(super) ranges: bool,
     /// How measurements are wrong that are wrong by more than noise: too long or too short alike
     /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided).
     #[arg(long, value_enum, default_value = "symmetric")]
@@ -146,6 +150,7 @@ impl Arguments {
             named("sigma", self.sigma),
             named("anchors", path(&self.anchors)),
             named("receiver-delays", Some(said(self.receiver_delays))),
+            named("ranges", switch(self.ranges)),
             named("errors", Some(said(self.errors))),
             named("distances", path(&self.distances)),
             named("estimate-speed", switch(self.estimate_speed)),

@@ -2,6 +2,7 @@
 
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
+use crate::emissions::Emissions;
 use crate::observations::Node;
 use crate::refine::Cancelled;
 use hc::Monitor;
@@ -113,6 +114,8 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// How to treat receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.
     pub receiver_delays: ReceiverDelays,
+    /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
+    pub emissions: Emissions,
     /// How measurements are wrong if they are wrong by more than noise. Default
     /// [`Errors::Symmetric`].
     pub errors: Errors,
@@ -172,6 +175,7 @@ impl<const D: usize> CalibrateOptions<D> {
             anchors: Vec::new(),
             positions: Vec::new(),
             receiver_delays: ReceiverDelays::None,
+            emissions: Emissions::Unknown,
             errors: Errors::Symmetric,
             distances: Vec::new(),
             estimate_speed: false,
@@ -192,6 +196,9 @@ impl<const D: usize> CalibrateOptions<D> {
         };
         if self.errors == Errors::OneSided && self.receiver_delays != ReceiverDelays::None {
             return Err(CalibrateError::OneSidedDelays);
+        }
+        if self.emissions == Emissions::Known && self.receiver_delays == ReceiverDelays::All {
+            return Err(CalibrateError::RangesWithDelays);
         }
         if let Some(sigma) = self.sigma {
             positive("sigma", sigma)?;
@@ -270,6 +277,27 @@ pub enum CalibrateError<const D: usize = 2> {
          with a delay; give --errors one-sided or --receiver-delays, not both"
     )]
     OneSidedDelays,
+    /// Distances, and delays of all receivers.
+    #[error(
+        "distances with a constant error of every receiver cannot be calibrated yet; leave known emissions out, so that each transmitter has an \
+         offset, or give --receiver-delays auto if only a few receivers have one"
+    )]
+    RangesWithDelays,
+    /// Many distances are below zero.
+    #[error(
+        "{} below zero, among them that of {receiver} and {transmitter}, {value} m; leave --ranges out if transmitters have unknown offsets",
+        match count { 1 => "a distance is".to_string(), _ => format!("{count} distances are") }
+    )]
+    NegativeRanges {
+        /// How many.
+        count: usize,
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+        /// Metres.
+        value: f64,
+    },
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),

@@ -3,6 +3,7 @@
 use crate::calibrate::input::anchors;
 use crate::calibrate::input::impossible::without_impossible;
 use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
+use crate::calibrate::input::ranges::as_ranges;
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
 use crate::calibrate::report::calibration::Calibration;
@@ -13,8 +14,10 @@ use crate::calibrate::search::submaps::overlap;
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
+use crate::emissions::Emissions;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
+use std::borrow::Cow;
 
 /// What `calibrate_with` does, for any number of coordinates.
 pub(crate) fn calibrate_with<const D: usize>(
@@ -25,11 +28,17 @@ pub(crate) fn calibrate_with<const D: usize>(
 ) -> Result<Calibration<D>, CalibrateError<D>> {
     options.validate()?;
     anchors::validate(measured, options)?;
-    let (table, impossible) = without_impossible(measured);
+    let (mut table, impossible) = without_impossible(measured);
+    let mut left_out = Vec::from_iter(impossible);
+    if options.emissions == Emissions::Known {
+        let (ranges, negative) = as_ranges(&table)?;
+        table = Cow::Owned(ranges);
+        left_out.extend(negative);
+    }
     check(monitor)?;
     let mut usable = usable::<D>(&table)?;
     check(monitor)?;
-    usable.warnings.extend(impossible);
+    usable.warnings.extend(left_out);
     let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
     let mut input = Input::new(&table, usable, options.receiver_delays == ReceiverDelays::All);
     let mut state = State::new(input.centred(), known, options, monitor);

@@ -183,7 +183,7 @@ pub(crate) fn covariance<const D: usize>(
             let gains: Vec<(Placed<D>, [f64; D], usize)> = column
                 .iter()
                 .zip(rays)
-                .map(|(o, (u, w))| (factor.invert((u.map(|u| w * u), *w)), *u, D * o.receiver))
+                .map(|(o, (u, w))| (factor.invert((u.map(|u| w * u), observations.of_offset(*w))), *u, D * o.receiver))
                 .collect();
             let mut sum = Bordered::ZERO;
             for (a, u, i) in &gains {
@@ -194,6 +194,7 @@ pub(crate) fn covariance<const D: usize>(
                 }
             }
             sum.add(&own_covariance(factor, sigma));
+            sum.corner = observations.of_offset(sum.corner);
             sum
         }));
     }

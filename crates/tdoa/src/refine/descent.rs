@@ -38,8 +38,11 @@ impl<'a, const D: usize> Descent<'a, D> {
         }
     }
 
-    /// Begins a descent at a network that is complete and finite.
-    pub(super) fn begin(&mut self, network: &Network<D>) {
+    /// Begins a descent at a network that is complete and finite. Of distances no transmitter has an offset.
+    pub(super) fn begin(&mut self, network: &mut Network<D>) {
+        if self.observations.are_ranges() {
+            network.offsets.fill(0.0);
+        }
         self.trial.clone_from(network);
         self.damping = FIRST;
         self.look(network);

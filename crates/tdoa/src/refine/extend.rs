@@ -2,6 +2,7 @@
 //! already known.
 
 use super::cancel::{Cancelled, check};
+use super::reseed::locate_transmitter;
 use crate::loss::Loss;
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
@@ -35,8 +36,8 @@ impl<const D: usize> PartialNetwork<D> {
 }
 
 /// Locates all unknown nodes, best observed ones first: transmitters from at least four known
-/// receivers, receivers from at least three known transmitters (one more of each in space), and with
-/// one less of them when nothing else is left. `None` if some node cannot be located at all.
+/// receivers, receivers from at least three known transmitters (one more of each in space; distances of transmitters
+/// take one less), and with one less of them when nothing else is left. `None` if some node cannot be located at all.
 pub(crate) fn extend<const D: usize>(
     observations: &Observations<D>,
     part: &PartialNetwork<D>,
@@ -44,10 +45,15 @@ pub(crate) fn extend<const D: usize>(
     monitor: &Monitor,
 ) -> Result<Option<Network<D>>, Cancelled> {
     let mut part = part.clone();
+    for (_, offset) in part.transmitters.iter_mut().flatten() {
+        *offset = observations.of_offset(*offset);
+    }
+    let fewest = if observations.are_ranges() { D } else { D + 1 };
     let mut sights = Vec::new();
     for spare in [1, 0] {
         loop {
-            let transmitters = locate_transmitters(observations, &mut part, D + 1 + spare, loss, &mut sights, monitor)?;
+            let transmitters =
+                locate_transmitters(observations, &mut part, fewest + spare, loss, &mut sights, monitor)?;
             let receivers = locate_receivers(observations, &mut part, D + spare, loss, &mut sights, monitor)?;
             if transmitters + receivers == 0 {
                 break;
@@ -84,7 +90,7 @@ fn locate_transmitters<const D: usize>(
         sights.clear();
         sights.extend(observations.of_transmitter(j).iter().filter_map(sight));
         if sights.len() >= least
-            && let Some(located) = multilateration::transmitter(sights, loss)
+            && let Some(located) = locate_transmitter(observations, sights, loss)
         {
             part.transmitters[j] = Some((located.position, located.offset));
             found += 1;

@@ -121,8 +121,15 @@ impl<const D: usize> Normal<D> {
                     block.rows[a][b] += square;
                 }
                 gradient[a] -= we * e * u[a];
-                block.border[a] += w * u[a];
                 placed.0[a] += we * e * u[a];
+            }
+            if observations.are_ranges() {
+                // Offsets stay as they are.
+                block.corner = 1.0;
+                continue;
+            }
+            for a in 0..D {
+                block.border[a] += w * u[a];
             }
             block.corner += w;
             placed.1 += we * e;
@@ -247,7 +254,8 @@ impl<const D: usize> Normal<D> {
                 continue;
             };
             let z = inverse.forward(*gradient);
-            let coupled = |(u, w): &([f64; D], f64)| (inverse.forward((u.map(|u| w * u), *w)), *u);
+            let coupled =
+                |(u, w): &([f64; D], f64)| (inverse.forward((u.map(|u| w * u), observations.of_offset(*w))), *u);
             if SPARSE * column.len() <= self.receivers {
                 // Few receivers: their blocks alone.
                 self.few.clear();
@@ -321,7 +329,7 @@ impl<const D: usize> Normal<D> {
                 let at = D * o.receiver;
                 let along = w * (0..D).map(|k| u[k] * self.receiver_steps[at + k]).sum::<f64>();
                 rhs = from_fn(|k| rhs[k] + along * u[k]);
-                last += along;
+                last += observations.of_offset(along);
             }
             first += column.len();
             self.transmitter_steps[j] = match &self.inverse_factors[j] {

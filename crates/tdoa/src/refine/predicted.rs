@@ -29,9 +29,10 @@ pub(crate) fn predicted_variances<const D: usize>(
             all.extend(std::iter::repeat_n(None, column.len()));
             continue;
         };
-        let g = |k: usize| (rays[k].0, 1.0);
+        let g = |k: usize| (rays[k].0, observations.of_offset(1.0));
         // A motion of the receivers by dr moves the transmitter by sum_l a_l u_l^T dr_l.
-        let gains: Vec<Placed<D>> = rays.iter().map(|(u, w)| factor.invert((u.map(|x| w * x), *w))).collect();
+        let gains: Vec<Placed<D>> =
+            rays.iter().map(|(u, w)| factor.invert((u.map(|x| w * x), observations.of_offset(*w)))).collect();
         let between = |k: usize, l: usize| -> f64 {
             let (a, b) = (D * column[k].receiver, D * column[l].receiver);
             let entry = |x: usize, y: usize| rays[k].0[x] * joint[(a + x) * size + b + y] * rays[l].0[y];
@@ -67,11 +68,13 @@ mod tests {
     use crate::refine::Projection;
     use hc::Monitor;
 
-    fn is_taken<const D: usize>(m: usize, n: usize) {
+    fn is_taken<const D: usize>(m: usize, n: usize, are_ranges: bool) {
         let network: Network<D> = random(m, n, 2);
         let mut values = network.pseudoranges();
         [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
-        let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
+        let measured = Pseudoranges::new(m, n, values).unwrap();
+        let measured = if are_ranges { measured.into_ranges() } else { measured };
+        let observations = Observations::new(&measured, |_, _| true);
         let projection = Projection::new(&observations, &network, &Monitor::default()).unwrap().unwrap();
         let variances = predicted_variances(&observations, &network, &Monitor::default()).unwrap().unwrap();
         for (k, variance) in variances.into_iter().enumerate() {
@@ -84,7 +87,9 @@ mod tests {
 
     #[test]
     fn the_network_takes_the_variance_of_a_prediction_of_a_change_of_one_measurement() {
-        is_taken::<2>(6, 7);
-        is_taken::<3>(8, 9);
+        for are_ranges in [false, true] {
+            is_taken::<2>(6, 7, are_ranges);
+            is_taken::<3>(8, 9, are_ranges);
+        }
     }
 }

@@ -91,7 +91,7 @@ impl<'a, const D: usize> Projection<'a, D> {
                 right[D * o.receiver + axis] += v * u[axis];
                 sum[axis] -= v * u[axis];
             }
-            *last -= v;
+            *last -= self.observations.of_offset(v);
         }
         let solved = |sums: &[Placed<D>]| -> Vec<Placed<D>> {
             let each = self.factors.iter().zip(sums);
@@ -114,7 +114,7 @@ impl<'a, const D: usize> Projection<'a, D> {
             let along = o.precision * o.precision * points::dot(*u, moved);
             let (sum, last) = &mut sums[o.transmitter];
             *sum = from_fn(|axis| sum[axis] + along * u[axis]);
-            *last += along;
+            *last += self.observations.of_offset(along);
         }
         Motion { transmitters: solved(&sums), receivers }
     }
@@ -162,18 +162,22 @@ mod tests {
     use crate::pseudoranges::Pseudoranges;
     use hc::Monitor;
 
-    fn is_absorbed<const D: usize>(m: usize, n: usize) {
-        let network: &Network<D> = &random(m, n, 2);
+    fn is_absorbed<const D: usize>(m: usize, n: usize, of_offset: f64) {
+        let mut network: Network<D> = random(m, n, 2);
+        network.offsets.iter_mut().for_each(|offset| *offset *= of_offset);
+        let network = &network;
         let mut values = network.pseudoranges();
         [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
-        let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
+        let measured = Pseudoranges::new(m, n, values).unwrap();
+        let measured = if of_offset == 0.0 { measured.into_ranges() } else { measured };
+        let observations = Observations::new(&measured, |_, _| true);
         let projection = Projection::new(&observations, network, &Monitor::default()).unwrap().unwrap();
         // A small motion of one node of each kind, by differences.
         let step = 1e-6;
         let mut moved = network.clone();
         moved.receivers[2][0] += step;
         moved.transmitters[4][D - 1] -= step;
-        moved.offsets[1] += step;
+        moved.offsets[1] += of_offset * step;
         let change: Vec<f64> =
             observations.all().iter().map(|o| (o.residual(&moved) - o.residual(network)) / step).collect();
         let (rest, _) = projection.off(&change);
@@ -195,7 +199,13 @@ mod tests {
 
     #[test]
     fn what_a_motion_makes_is_absorbed_and_nothing_else() {
-        is_absorbed::<2>(6, 7);
-        is_absorbed::<3>(8, 9);
+        is_absorbed::<2>(6, 7, 1.0);
+        is_absorbed::<3>(8, 9, 1.0);
+    }
+
+    #[test]
+    fn of_distances_no_offset_absorbs_anything() {
+        is_absorbed::<2>(6, 7, 0.0);
+        is_absorbed::<3>(8, 9, 0.0);
     }
 }

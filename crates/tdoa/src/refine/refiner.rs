@@ -110,7 +110,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
 
     fn minimise(&mut self, mut network: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
         let NetworkRefiner { observations, share, ref monitor, ref mut descent, .. } = *self;
-        descent.begin(&network);
+        descent.begin(&mut network);
         let mut annealed = options.anneal_from.unwrap_or(0.0);
         let mut loss = Loss { nu: self.nu, scale: 1.0 };
         loss.scale = match options.scale {

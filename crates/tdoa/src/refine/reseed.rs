@@ -23,7 +23,7 @@ pub(crate) fn place_transmitters<const D: usize>(
     let mut kept = 0;
     for j in 0..observations.transmitters {
         sights_of_transmitter(observations, network, j, &mut sights);
-        match multilateration::transmitter(&sights, loss) {
+        match locate_transmitter(observations, &sights, loss) {
             Some(found) => {
                 network.transmitters[j] = found.position;
                 network.offsets[j] = found.offset;
@@ -32,6 +32,19 @@ pub(crate) fn place_transmitters<const D: usize>(
         }
     }
     kept
+}
+
+/// A transmitter by what receivers measured of it: one without an offset, as a receiver is located.
+pub(super) fn locate_transmitter<const D: usize>(
+    observations: &Observations<D>,
+    sights: &[Sight<D>],
+    loss: &Loss,
+) -> Option<Located<D>> {
+    if observations.are_ranges() {
+        multilateration::receiver(sights, loss)
+    } else {
+        multilateration::transmitter(sights, loss)
+    }
 }
 
 /// Locates every transmitter, then every receiver that is not held, from all other nodes and moves
@@ -48,7 +61,7 @@ pub(crate) fn reseed<const D: usize>(
         sights_of_transmitter(observations, network, j, &mut sights);
         check(monitor)?;
         let now = multilateration::cost(&sights, network.transmitters[j], network.offsets[j], loss);
-        if let Some(found) = better(multilateration::transmitter(&sights, loss), now) {
+        if let Some(found) = better(locate_transmitter(observations, &sights, loss), now) {
             network.transmitters[j] = found.position;
             network.offsets[j] = found.offset;
             moved += 1;
@@ -75,7 +88,11 @@ pub(crate) fn places_of_transmitter<const D: usize>(
 ) -> Vec<Located<D>> {
     let mut sights = Vec::new();
     sights_of_transmitter(observations, network, j, &mut sights);
-    multilateration::transmitters(&sights, loss)
+    if observations.are_ranges() {
+        multilateration::receivers(&sights, loss)
+    } else {
+        multilateration::transmitters(&sights, loss)
+    }
 }
 
 /// Places of a receiver that all others leave it, whatever they cost.

@@ -82,6 +82,7 @@ pub(crate) fn sampled_covariance<const D: usize>(
         *block = reduced.normal().inverse_factor(j).and_then(|factor| {
             let mut sum = (*block)?;
             sum.add(&own_covariance(factor, sigma));
+            sum.corner = observations.of_offset(sum.corner);
             Some(sum)
         });
     }
@@ -199,10 +200,13 @@ impl<'a, const D: usize> Sampler<'a, D> {
             for o in column {
                 let (direction, d) = ray(o, network);
                 let e = (o.value - network.offsets[j] - d) * o.precision;
-                let row: Placed<D> = (direction.map(|u| u * o.precision), o.precision);
+                let row: Placed<D> = (direction.map(|u| u * o.precision), self.observations.of_offset(o.precision));
                 block.add_product(1.0, &row, &row);
                 right.0.iter_mut().zip(row.0).for_each(|(sum, u)| *sum += e * u);
-                right.1 += e * o.precision;
+                right.1 += e * row.1;
+            }
+            if self.observations.are_ranges() {
+                block.corner = 1.0;
             }
             for pin in pins {
                 block.rows[pin.axis][pin.axis] += pin.precision * pin.precision;

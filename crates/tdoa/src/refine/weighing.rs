@@ -47,7 +47,7 @@ impl<'a, const D: usize> Weighing<'a, D> {
             let (cells, pins) = residuals.split_at(observations.len());
             cells.iter().map(|&e| cost.cost(e)).sum::<f64>() + pins.iter().map(|e| 0.5 * precision * e * e).sum::<f64>()
         };
-        descent.begin(&network);
+        descent.begin(&mut network);
         let mut now = total(&descent.residuals);
         for _ in 0..steps {
             check(monitor)?;

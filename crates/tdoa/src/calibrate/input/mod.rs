@@ -3,5 +3,6 @@
 pub(crate) mod anchors;
 pub(crate) mod impossible;
 pub(crate) mod middle_delays;
+pub(crate) mod ranges;
 pub(crate) mod selection;
 pub(crate) mod speed;

@@ -13,7 +13,7 @@ pub(crate) struct Input<'a> {
     /// The nodes that take part.
     pub(crate) usable: Usable,
     /// What is subtracted from the measurements of each of these transmitters; the offsets take it back at
-    /// the end. Large common times cost digits.
+    /// the end. Large common times cost digits. Nothing is subtracted from distances.
     pub(crate) shifts: Vec<f64>,
 }
 
@@ -22,7 +22,11 @@ impl<'a> Input<'a> {
     pub(crate) fn new(table: &'a Pseudoranges, usable: Usable, delayed: bool) -> Input<'a> {
         let selected = table.select(&usable.receivers, &usable.transmitters);
         // What is subtracted does not depend on the delays.
-        let shifts = if delayed { middles(&without_middle_delays(&selected)) } else { middles(&selected) };
+        let shifts = match (table.are_ranges(), delayed) {
+            (true, _) => vec![0.0; selected.transmitters()],
+            (false, true) => middles(&without_middle_delays(&selected)),
+            (false, false) => middles(&selected),
+        };
         Input { table, usable, shifts }
     }
 

@@ -156,7 +156,8 @@ fn choose(
         let explained = otherwise.as_ref().map_or(0.0, |_| explained_by_errors(measured, bent, judged));
         let evidence = likelier.evidence.map(|evidence| evidence - explained);
         test = DimensionTest { evidence, change: likelier.change, ..found };
-        if whole.fits && (test.is_space() || !judged.fits) {
+        // Where nothing fits, the better one is told.
+        if (whole.fits || !flat.fits) && (test.is_space() || (whole.fits && !judged.fits)) {
             if test.leaves_both() && judged.fits {
                 whole.call_not_unique("the measurements are nearly as likely in the plane as in space".into());
             }

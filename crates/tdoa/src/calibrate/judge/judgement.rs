@@ -146,7 +146,9 @@ impl<const D: usize> State<'_, D> {
         let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(measured);
         let doubtful = doubtful_receivers(measured, &kept, band / best.size());
         // Offsets of transmitters in the rows count where residuals are beyond a hundredth of the network's size.
+        // Of distances, rows and columns say the same.
         let transposed = options.receiver_delays != ReceiverDelays::All
+            && !measured.are_ranges()
             && misfit > 0.01 * best.size()
             && looks_transposed(&input.table.select(&input.usable.receivers, &input.usable.transmitters));
         // On which side of a plane a node is, its expected height must not tell.

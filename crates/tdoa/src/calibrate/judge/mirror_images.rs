@@ -250,7 +250,7 @@ impl<const D: usize> Sides<'_, D> {
 
     /// The mirror image of a node where all others stay; `None` if it leads back, or costs far too much.
     fn beside_held(&self, kind: NodeKind, index: usize, plane: &Plane<D>, height: f64) -> Option<Mirrored<D>> {
-        let with_offset = kind == NodeKind::Transmitters;
+        let with_offset = kind == NodeKind::Transmitters && !self.observations.are_ranges();
         let position = self.position(kind, index);
         let offset = if with_offset { self.network.offsets[index] } else { 0.0 };
         let reflection = plane.mirrored(position);

@@ -89,6 +89,10 @@ impl<const D: usize> State<'_, D> {
     /// taken out so far, each at its price. `before` are the networks without anything taken out.
     pub(crate) fn prefer_delays_of_all(&mut self, before: &[RefinedNetwork<D>]) -> Result<(), CalibrateError<D>> {
         let receivers = self.measured.receivers();
+        if self.measured.are_ranges() {
+            // The delay of the first receiver is none of the others' then.
+            return Ok(());
+        }
         let unknown: Vec<Fault<D>> = (1..receivers).map(|i| delay(i, 0.0)).collect();
         let whole = self.observe(&unknown);
         if !(2..=MOST_RECEIVERS).contains(&receivers) || whole.len() < whole.unknowns() + LEAST_REDUNDANCY {

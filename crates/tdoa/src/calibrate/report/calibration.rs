@@ -14,6 +14,7 @@ use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;
 use crate::degeneracy::Usable;
+use crate::emissions::Emissions;
 use crate::observations::Node;
 use crate::points::{distance, minus};
 use serde::{Deserialize, Serialize};
@@ -145,6 +146,9 @@ pub struct Calibration<const D: usize = 2> {
     pub systematic: Option<SystematicErrors<D>>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
+    /// What was known of the times at which transmitters sent. Where they were known, offsets are zero.
+    #[serde(default)]
+    pub emissions: Emissions,
     /// Seed of the search.
     pub seed: u64,
     /// Number of starts of the search, or of small networks if these were laid together.

@@ -89,6 +89,7 @@ impl<const D: usize> State<'_, D> {
             with_candidates,
             systematic: None,
             warnings: self.warnings(input, judged),
+            emissions: self.options.emissions,
             seed: self.options.seed,
             starts: self.starts,
             laid_together: self.weak.is_some(),

@@ -269,7 +269,9 @@ impl<const D: usize> ReceiverLayout<D> {
                     })
                 };
                 let sights: Vec<Sight<D>> = (0..measured.receivers()).filter_map(sight).collect();
-                Ok((sights.len() >= heard_by::<D>()).then(|| multilateration::transmitter(&sights, &loss)).flatten())
+                let locate =
+                    if measured.are_ranges() { multilateration::receiver } else { multilateration::transmitter };
+                Ok((sights.len() >= heard_by::<D>()).then(|| locate(&sights, &loss)).flatten())
             })
             .collect::<Result<_, CalibrateError<D>>>()?;
         for i in 0..measured.receivers() {

@@ -6,12 +6,15 @@ use crate::pseudoranges::Pseudoranges;
 use crate::refine::NetworkRefiner;
 
 /// The Schur complement block by block, as the front of this module gives it.
-fn is_eliminated_as_defined<const D: usize>(hearing: usize) {
+fn is_eliminated_as_defined<const D: usize>(hearing: usize, are_ranges: bool) {
     let network: Network<D> = random(30, 20, 1);
     let heard = |i: usize, j: usize| (i + 7 * j) % 30 < hearing;
     let values = network.pseudoranges();
     let measured = (0..600).map(|k| if heard(k / 20, k % 20) { values[k] } else { f64::NAN }).collect();
-    let observations = Observations::new(&Pseudoranges::new(30, 20, measured).unwrap(), |_, _| true);
+    let measured = Pseudoranges::new(30, 20, measured).unwrap();
+    let measured = if are_ranges { measured.into_ranges() } else { measured };
+    let observations = Observations::new(&measured, |_, _| true);
+    let of_offset = if are_ranges { 0.0 } else { 1.0 };
     let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY, &Monitor::default());
     let normal = refiner.normal_at(&network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
     let size = D * 30;
@@ -26,9 +29,9 @@ fn is_eliminated_as_defined<const D: usize>(hearing: usize) {
             .collect();
         for &(i, u) in &rays {
             for &(k, v) in &rays {
-                let (solved, last) = factor.invert((v, 1.0));
+                let (solved, last) = factor.invert((v, of_offset));
                 let own = if i == k { 1.0 } else { 0.0 };
-                let between = own - (dot(u, solved) + last);
+                let between = own - (dot(u, solved) + of_offset * last);
                 for (a, u) in u.iter().enumerate() {
                     for (b, v) in v.iter().enumerate() {
                         expected[(k + b) * size + i + a] += between * u * v;
@@ -48,7 +51,9 @@ fn is_eliminated_as_defined<const D: usize>(hearing: usize) {
 #[test]
 fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
     for hearing in [30, 6] {
-        is_eliminated_as_defined::<2>(hearing);
-        is_eliminated_as_defined::<3>(hearing);
+        for are_ranges in [false, true] {
+            is_eliminated_as_defined::<2>(hearing, are_ranges);
+            is_eliminated_as_defined::<3>(hearing, are_ranges);
+        }
     }
 }

@@ -1,0 +1,89 @@
+//! Measurements of transmitters whose send times are known: distances.
+
+use crate::calibrate::options::CalibrateError;
+use crate::degeneracy::list;
+use crate::pseudoranges::Pseudoranges;
+use crate::quantity::number;
+
+/// Negative values, one in so many of all, above which measurements are no distances with gross errors.
+const MANY: usize = 5;
+
+/// Measurements as distances, and a warning that names the negative ones, which are left out.
+///
+/// # Errors
+/// If many are negative.
+pub(crate) fn as_ranges<const D: usize>(
+    measured: &Pseudoranges,
+) -> Result<(Pseudoranges, Option<String>), CalibrateError<D>> {
+    let negative: Vec<_> = measured.cells().iter().filter(|(.., value)| **value < 0.0).collect();
+    let Some(&(i, j, &value)) = negative.first() else { return Ok((measured.clone().into_ranges(), None)) };
+    let names = |i: usize, j: usize| (measured.receiver_names()[i].clone(), measured.transmitter_names()[j].clone());
+    if MANY * negative.len() > measured.observed() {
+        let (receiver, transmitter) = names(i, j);
+        return Err(CalibrateError::NegativeRanges { count: negative.len(), receiver, transmitter, value });
+    }
+    let name = |&(i, j, value): &(usize, usize, &f64)| {
+        let (receiver, transmitter) = names(i, j);
+        format!("{receiver}-{transmitter} ({} m)", number(*value, 12))
+    };
+    let warning = format!(
+        "left out, for distances are positive: {}; leave cells empty where nothing was measured",
+        list(&negative.iter().map(name).collect::<Vec<_>>())
+    );
+    Ok((measured.filter(|_, _, value| value >= 0.0).into_ranges(), Some(warning)))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::accuracy::cramer_rao;
+    use crate::align::align;
+    use crate::calibrate::{Calibrates, Dimension};
+    use crate::{CalibrateError, CalibrateOptions, Emissions, SimulateOptions, calibrate, simulate};
+
+    /// Networks are as near to the truth as distances tell, which is nearer than pseudoranges do.
+    fn are_at_the_bound<const D: usize>()
+    where
+        Dimension<D>: Calibrates<D>,
+    {
+        let (mut squares, mut of_bound) = (0.0, 0.0);
+        for seed in 0..6 {
+            let mut options = SimulateOptions::<D>::new();
+            (options.receivers, options.transmitters, options.noise, options.seed) = (10, 20, 0.01, seed);
+            (options.missing, options.outliers, options.emissions) = (0.1, 0.05, Emissions::Known);
+            let made = simulate(&options).unwrap();
+            let mut options = CalibrateOptions::<D>::new();
+            (options.emissions, options.seed) = (Emissions::Known, seed);
+            let found = calibrate(&made.pseudoranges, &options).unwrap();
+            assert!(found.unique && found.offsets.iter().flatten().all(|offset| *offset == 0.0), "seed {seed}");
+            assert!(found.offset_std.iter().flatten().all(|deviation| *deviation == 0.0), "seed {seed}");
+            let truth = &made.network;
+            let receivers: Vec<[f64; D]> = found.receivers.iter().flatten().copied().collect();
+            let apart = align(&receivers, &truth.receivers, false).unwrap().rms;
+            let ranges = made.pseudoranges.clone().into_ranges();
+            let bound = cramer_rao(&ranges, &made.outliers, truth, 0.01);
+            assert!(bound < cramer_rao(&made.pseudoranges, &made.outliers, truth, 0.01), "seed {seed}");
+            assert!(apart < 3.0 * bound, "seed {seed}: {apart} {bound}");
+            squares += apart * apart;
+            of_bound += bound * bound;
+        }
+        // Six networks of about fifteen coordinates each: a mean square 1.5 times the bound's has a chance of one in a
+        // thousand.
+        assert!(squares < 1.5 * of_bound, "{squares} {of_bound}");
+    }
+
+    #[test]
+    fn distances_are_calibrated_at_the_bound() {
+        are_at_the_bound::<2>();
+        are_at_the_bound::<3>();
+    }
+
+    #[test]
+    fn pseudoranges_are_no_distances() {
+        let made = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
+        let options = CalibrateOptions { emissions: Emissions::Known, ..Default::default() };
+        let found = calibrate(&made.pseudoranges, &options);
+        assert!(matches!(found, Err(CalibrateError::NegativeRanges { .. })), "{found:?}");
+        let late = made.pseudoranges.map(|_, _, value| value + 30.0);
+        assert!(calibrate(&late, &options).is_ok_and(|found| !found.fits));
+    }
+}
