@@ -16,7 +16,7 @@ pub enum Emissions {
 }
 
 impl Emissions {
-    /// Known of ranges.
+    /// [`Emissions::Known`] where measurements are ranges, [`Emissions::Unknown`] otherwise.
     pub fn of_ranges(are_ranges: bool) -> Emissions {
         if are_ranges { Emissions::Known } else { Emissions::Unknown }
     }

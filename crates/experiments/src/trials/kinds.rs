@@ -258,7 +258,7 @@ impl Outcome {
         self.error.is_some_and(|error| error > self.near())
     }
 
-    /// Whether no alternative that is listed has them where they are either.
+    /// Whether the receivers are elsewhere than the network and all its alternatives have them.
     pub fn is_unlisted(&self) -> bool {
         self.nearest.is_some_and(|error| error > self.near())
     }

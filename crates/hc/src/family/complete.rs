@@ -52,7 +52,8 @@ impl Family {
     }
 
     /// The trace test of a fibre: whether it is a union of whole orbits. It tells nothing about orbits of
-    /// which the fibre has no solution. It takes several times as long as finding the fibre. The option `patience` applies to the further points that the test needs.
+    /// which the fibre has no solution. It takes several times as long as finding the fibre. The option
+    /// `patience` applies to the further points that the test needs.
     ///
     /// # Errors
     /// If the fibre belongs to another family, or the enlarged family of the test does not compile.

@@ -167,3 +167,9 @@ pub struct PathCounts {
     /// How often a path was tracked again.
     pub retracked: usize,
 }
+
+/// The number that each point has once some are left out; `None` for these.
+pub(super) fn numbers_without(left_out: &[bool]) -> Vec<Option<usize>> {
+    let mut next = 0..;
+    left_out.iter().map(|&gone| if gone { None } else { next.next() }).collect()
+}

@@ -6,7 +6,7 @@
 //! their orbit under the monodromy group. The [trace test](crate::Family::trace_test) shows whether
 //! orbits are whole. Whether there are others is a question that no loop answers.
 
-use super::fibre::Fibre;
+use super::fibre::{Fibre, numbers_without};
 use super::joined::Joined;
 use super::reach::Reach;
 use super::search::{Monodromy, MonodromyOptions, Stopped};
@@ -313,18 +313,10 @@ impl<'a, E: Evaluate> Filling<'a, E> {
             }
         }
         remove(&mut self.fibre.solutions, n, &drop);
-        // Numbers once the points that are dropped before them are left out.
-        let before: Vec<usize> = drop
-            .iter()
-            .scan(0, |sum, &dropped| {
-                let now = *sum;
-                *sum += usize::from(dropped);
-                Some(now)
-            })
-            .collect();
-        let number = |k: usize| (!drop[same[k]]).then(|| same[k] - before[same[k]]);
+        let numbers = numbers_without(&drop);
+        let number = |k: usize| numbers[same[k]];
         if let Some(representatives) = &mut self.fibre.representatives {
-            representatives.extend(added.iter().map(|&(first, ..)| first).filter(|&k| !drop[k]).map(|k| k - before[k]));
+            representatives.extend(added.iter().filter_map(|&(first, ..)| numbers[first]));
         }
         self.joined.grow(self.fibre.len());
         for (first, end, from) in added {

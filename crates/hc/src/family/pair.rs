@@ -121,13 +121,12 @@ impl Pairs {
         let (x, p) = (random.normals(n), random.normals(self.compiled.parameters()));
         let mut memory = self.compiled.memory(Isa::Portable);
         let mut values = vec![Complex64::default(); n];
-        let holds = |set: &Vec<usize>| {
+        let mut holds = |set: &Vec<usize>| {
             let mut x = x.clone();
             set.iter().for_each(|&j| x[j] = Complex64::default());
             self.compiled.values(&mut memory, &x, &p, &mut values);
             values.iter().filter(|value| value.norm() <= f64::EPSILON).count() == set.len()
         };
-        let mut holds = holds;
         sets.into_iter().filter(|set| holds(set)).take(MOST_SETS).collect()
     }
 }

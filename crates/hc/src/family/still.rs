@@ -3,7 +3,7 @@
 //! Each solution that no parameter moves is an orbit of its own. On any line of parameters it moves as the trace test
 //! asks for, and no loop leads to it or away from it. Searches and tests therefore leave these solutions out.
 
-use super::fibre::Fibre;
+use super::fibre::{Fibre, numbers_without};
 use super::reach::natural_size;
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
@@ -47,9 +47,8 @@ impl<'a, E: Evaluate> Still<'a, E> {
             let chosen = fibre.iter().zip(&still).filter(move |(_, still)| **still == wanted);
             chosen.flat_map(|(x, _)| x.iter().copied()).collect::<Vec<_>>()
         };
-        // Numbers once the solutions before them are left out.
-        let before = |k: usize| still[..k].iter().filter(|&&still| still).count();
-        let moving = |which: &Vec<usize>| which.iter().filter(|&&k| !still[k]).map(|&k| k - before(k)).collect();
+        let numbers = numbers_without(&still);
+        let moving = |which: &Vec<usize>| which.iter().filter_map(|&k| numbers[k]).collect();
         let representatives = fibre.representatives.as_ref().map(moving);
         let solutions = of(false);
         (Fibre { solutions, representatives, ..fibre.clone() }, of(true))

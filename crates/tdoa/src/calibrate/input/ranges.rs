@@ -66,8 +66,8 @@ mod tests {
             squares += apart * apart;
             of_bound += bound * bound;
         }
-        // Six networks of about fifteen coordinates each: a mean square 1.5 times the bound's has a chance of one in a
-        // thousand.
+        // Six networks of 17 coordinates each in the plane, more in space: if all were equally certain, a mean square 1.5 times the
+        // bound's would have a chance of one in a thousand.
         assert!(squares < 1.5 * of_bound, "{squares} {of_bound}");
     }
 
