@@ -26,6 +26,17 @@ pub(crate) fn calibrate_with<const D: usize>(
     sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
+    calibrate_looking(measured, options, sources, monitor, |_| true)
+}
+
+/// Calibrates, and looks for errors of receivers if `may_have_errors` says so of what the search has found.
+pub(crate) fn calibrate_looking<const D: usize>(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<D>,
+    sources: &[&dyn Hypotheses<D>],
+    monitor: &Monitor,
+    may_have_errors: impl FnOnce(&State<'_, D>) -> bool,
+) -> Result<Calibration<D>, CalibrateError<D>> {
     options.validate()?;
     anchors::validate(measured, options)?;
     let (mut table, impossible) = without_impossible(measured);
@@ -42,7 +53,7 @@ pub(crate) fn calibrate_with<const D: usize>(
     let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
     let mut input = Input::new(&table, usable, options.receiver_delays == ReceiverDelays::All);
     let mut state = State::new(input.centred(), known, options, monitor);
-    let found = steps(&mut input, &mut state, sources);
+    let found = steps(&mut input, &mut state, sources, may_have_errors);
     found.map_err(|error| error.leaving(state.so_far.map(|best| input.whole(best))))
 }
 
@@ -51,6 +62,7 @@ fn steps<const D: usize>(
     input: &mut Input<'_>,
     state: &mut State<'_, D>,
     sources: &[&dyn Hypotheses<D>],
+    may_have_errors: impl FnOnce(&State<'_, D>) -> bool,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
     let options = state.options;
     if options.receiver_delays == ReceiverDelays::All {
@@ -63,8 +75,10 @@ fn steps<const D: usize>(
     }
     let best = &state.ranked[0];
     state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
-    state.clear()?;
-    state.leave_out_reflections()?;
+    if may_have_errors(state) {
+        state.clear()?;
+        state.leave_out_reflections()?;
+    }
     state.hold(&input.usable)?;
     state.level()?;
     check(state.monitor)?;

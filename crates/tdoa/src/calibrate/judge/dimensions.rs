@@ -3,16 +3,16 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
+use crate::calibrate::judge::excluded::plane_is_excluded;
 use crate::calibrate::judge::explained::explained_by_errors;
 use crate::calibrate::judge::known_heights::{KnownHeights, in_plane};
-use crate::calibrate::judge::lifted::{LIFTED, Lifted, Raised};
-use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, SearchOptions};
+use crate::calibrate::judge::lifted::{Known, from_sources, lifted, unless_stopped};
+use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::truncated_cost::truncated;
-use crate::calibrate::steps::calibrate_with;
+use crate::calibrate::steps::{calibrate_looking, calibrate_with};
 use crate::flatness::{FLAT, slenderness};
-use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
@@ -124,7 +124,20 @@ fn choose(
     let plane = in_plane(options, measured.receivers());
     let mut first = plane.clone();
     first.search.max_starts = plane.search.max_starts.min(FIRST_STARTS.max(plane.search.min_starts));
-    let mut flat = calibrate_with(measured, &first, &[], monitor)?;
+    let mut excluded = false;
+    let mut flat = calibrate_looking(measured, &first, &[], monitor, |plane| {
+        excluded = plane_is_excluded(plane, options);
+        !excluded
+    })?;
+    if excluded {
+        if let Some(found) = unless_stopped(calibrate_with(measured, options, &[], monitor))? {
+            let test = compare(measured, &flat, &found, options);
+            if found.fits && test.is_space() {
+                return Ok(Calibrated::Space(Calibration { dimension_test: Some(test), ..found }));
+            }
+        }
+        flat = calibrate_with(measured, &first, &[], monitor)?;
+    }
     let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
     let raised = lifted(measured, options, &flat, monitor)?;
     let mut test =
@@ -133,9 +146,14 @@ fn choose(
         doubt(&mut flat, test);
         return Ok(Calibrated::Plane(flat));
     }
-    let raised = raised.map(Raised);
-    let sources: Vec<&dyn Hypotheses<3>> = raised.iter().map(|source| source as &dyn Hypotheses<3>).collect();
-    if let Some(mut whole) = unless_stopped(calibrate_with(measured, options, &sources, monitor))? {
+    let known = raised.as_ref().map(Known);
+    let sources: Vec<&dyn Hypotheses<3>> = known.iter().map(|source| source as &dyn Hypotheses<3>).collect();
+    let mut in_space = options.clone();
+    if flat.fits && !test.is_space() {
+        // Planar measurements have many networks in space that fit alike, on which starts do not agree.
+        in_space.search.max_starts = first.search.max_starts;
+    }
+    if let Some(mut whole) = unless_stopped(calibrate_with(measured, &in_space, &sources, monitor))? {
         let otherwise = otherwise_cleared(measured, &first, &flat, monitor)?;
         let takes_out = first.receiver_delays == ReceiverDelays::Auto;
         // With the errors of receivers, and without.
@@ -147,7 +165,7 @@ fn choose(
         let found = compare(measured, judged, &whole, options);
         // What fits best need not be likeliest: a few heights may say about what many do.
         let likelier = if found.evidence >= test.evidence { found } else { test };
-        if let Some(Raised(first)) = raised.filter(|Raised(first)| first.determined && test.is_likelier_than(&found)) {
+        if let Some(first) = raised.filter(|first| first.determined && test.is_likelier_than(&found)) {
             whole = first;
             whole.call_not_unique(
                 "another network fits the measurements more closely, with heights that are less likely".into(),
@@ -222,33 +240,9 @@ fn otherwise_cleared(
         // Errors of all are no doubt of one.
         ReceiverDelays::All => return Ok(None),
     };
-    unless_stopped(calibrate_with(measured, &CalibrateOptions { receiver_delays, ..options.clone() }, &[], monitor))
-}
-
-/// A calibration if there is one; stopping is an error, failing is none.
-fn unless_stopped<const D: usize>(
-    ended: Result<Calibration<D>, CalibrateError<D>>,
-) -> Result<Option<Calibration<D>>, CalibrateError<D>> {
-    match ended {
-        Ok(found) => Ok(Some(found)),
-        Err(error @ CalibrateError::Cancelled(_)) => Err(error),
-        Err(_) => Ok(None),
-    }
-}
-
-/// A calibration in space that starts at a planar one; `None` where there is none.
-fn lifted(
-    measured: &Pseudoranges,
-    options: &CalibrateOptions<3>,
-    flat: &Calibration,
-    monitor: &Monitor,
-) -> Result<Option<Calibration<3>>, CalibrateError<3>> {
-    let starts = LIFTED.len();
-    let mut options = options.clone();
-    options.search =
-        SearchOptions { min_starts: starts, max_starts: starts, restarts: false, minimal_subsets: 0, ..options.search };
-    let source = Lifted { flat, size: spread(flat.receivers.iter().flatten()) };
-    unless_stopped(calibrate_with(measured, &options, &[&source], monitor))
+    // Its search would find the same.
+    let options = CalibrateOptions { receiver_delays, search: from_sources(1, options.search), ..options.clone() };
+    unless_stopped(calibrate_with(measured, &options, &[&Known(flat)], monitor))
 }
 
 /// The likelihood ratio of space and plane, over the measurements that both have, with the deviation that

@@ -1,9 +1,13 @@
-//! Starts of the search in space: at a planar network with heights, and at a network in space.
+//! Calibrations that start at networks found before: at a planar one with heights, or as they are.
 
+use crate::calibrate::options::{CalibrateError, CalibrateOptions, SearchOptions};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::{Hypotheses, generator};
+use crate::calibrate::steps::calibrate_with;
+use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
+use hc::Monitor;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -12,7 +16,8 @@ pub(super) const LIFTED: [f64; 6] = [0.03, 0.1, 0.3, 0.03, 0.1, 0.3];
 
 /// Starts in space from a planar network.
 pub(super) struct Lifted<'a> {
-    pub(super) flat: &'a Calibration,
+    pub(super) names: &'a [String],
+    pub(super) receivers: &'a [Option<[f64; 2]>],
     pub(super) size: f64,
 }
 
@@ -21,27 +26,57 @@ impl Hypotheses<3> for Lifted<'_> {
         let mut rng = generator(seed ^ 0x2f0b_4c47_91d3_55e9, index);
         let height = LIFTED[index % LIFTED.len()] * self.size;
         let lift = |p: [f64; 2]| [p[0], p[1], height * rng.sample::<f64, _>(StandardNormal)];
-        vec![start(measured, self.flat, lift)]
+        vec![start(measured, self.names, self.receivers, lift)]
     }
 }
 
-/// One start at a network in space.
-pub(super) struct Raised(pub(super) Calibration<3>);
+/// One start at a network that was found before.
+pub(super) struct Known<'a, const D: usize>(pub(super) &'a Calibration<D>);
 
-impl Hypotheses<3> for Raised {
-    fn propose(&self, measured: &Pseudoranges, index: usize, _: u64) -> Vec<PartialNetwork<3>> {
-        if index == 0 { vec![start(measured, &self.0, |p| p)] } else { Vec::new() }
+impl<const D: usize> Hypotheses<D> for Known<'_, D> {
+    fn propose(&self, measured: &Pseudoranges, index: usize, _: u64) -> Vec<PartialNetwork<D>> {
+        if index == 0 { vec![start(measured, &self.0.receiver_names, &self.0.receivers, |p| p)] } else { Vec::new() }
     }
 }
 
-/// The receivers of a calibration in other places. The search may work on some of the nodes.
-fn start<const D: usize>(
+/// Receivers of these names in other places. The search may work on some of the nodes.
+fn start<const D: usize, const E: usize>(
     measured: &Pseudoranges,
-    from: &Calibration<D>,
-    mut to: impl FnMut([f64; D]) -> [f64; 3],
-) -> PartialNetwork<3> {
-    let place = |name: &String| from.receiver_names.iter().position(|other| other == name);
-    let receivers = measured.receiver_names().iter();
-    let receivers = receivers.map(|name| from.receivers[place(name)?].map(&mut to)).collect();
+    names: &[String],
+    receivers: &[Option<[f64; D]>],
+    mut to: impl FnMut([f64; D]) -> [f64; E],
+) -> PartialNetwork<E> {
+    let place = |name: &String| names.iter().position(|other| other == name);
+    let of = |name: &String| receivers[place(name)?].map(&mut to);
+    let receivers = measured.receiver_names().iter().map(of).collect();
     PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }
+}
+
+/// A search of so many starts, all from sources that are given.
+pub(super) fn from_sources(starts: usize, search: SearchOptions) -> SearchOptions {
+    SearchOptions { min_starts: starts, max_starts: starts, restarts: false, minimal_subsets: 0, ..search }
+}
+
+/// A calibration in space that starts at a planar one; `None` where there is none.
+pub(super) fn lifted(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<3>,
+    flat: &Calibration,
+    monitor: &Monitor,
+) -> Result<Option<Calibration<3>>, CalibrateError<3>> {
+    let options = CalibrateOptions { search: from_sources(LIFTED.len(), options.search), ..options.clone() };
+    let size = spread(flat.receivers.iter().flatten());
+    let source = Lifted { names: &flat.receiver_names, receivers: &flat.receivers, size };
+    unless_stopped(calibrate_with(measured, &options, &[&source], monitor))
+}
+
+/// A calibration if there is one; stopping is an error, failing is none.
+pub(super) fn unless_stopped<const D: usize>(
+    ended: Result<Calibration<D>, CalibrateError<D>>,
+) -> Result<Option<Calibration<D>>, CalibrateError<D>> {
+    match ended {
+        Ok(found) => Ok(Some(found)),
+        Err(error @ CalibrateError::Cancelled(_)) => Err(error),
+        Err(_) => Ok(None),
+    }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod dimension_test;
 pub(crate) mod dimensions;
+mod excluded;
 mod explained;
 pub(crate) mod far_transmitters;
 pub(crate) mod judgement;
