@@ -20,6 +20,7 @@ pub(crate) fn failure(file: &Path, error: FamilyError) -> Failure {
     match error {
         FamilyError::Checkpoint(error) => Failure::unusable(error),
         FamilyError::Ranks(error) => Failure::unusable(error),
+        error @ FamilyError::Special { .. } => Failure::Undetermined(error.to_string()),
         error => Failure::in_file(file, error),
     }
 }

@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         Some(path) => family::fibre(&family, path)?.0,
         None => family.find_pair(arguments.seed).map_err(|error| match error {
             FamilyError::NoPair => Failure::Undetermined(format!("{error} with --seed-pair")),
-            error => Failure::in_file(path, error),
+            error => family::failure(path, error),
         })?,
     };
     let options = MonodromyOptions::new()
@@ -81,9 +81,11 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.complete(&family, &start, &options))?;
     // Rank 0 has the fibre.
     let found = found.map_err(|error| match (error, &arguments.seed_pair) {
-        (error @ (FamilyError::FirstSolution { .. } | FamilyError::FirstSingular { .. }), Some(pair)) => {
-            Failure::in_file(pair, error)
-        }
+        (
+            error
+            @ (FamilyError::FirstSolution { .. } | FamilyError::FirstSingular { .. } | FamilyError::Misses { .. }),
+            Some(pair),
+        ) => Failure::in_file(pair, error),
         (error, _) => family::failure(path, error),
     });
     let Some(found) = found? else { return Ok(()) };

@@ -9,7 +9,7 @@ use cli::{Failure, output};
 use hc::family::TargetLimits;
 use hc::poly::counted;
 use hc::ranks::Ranks;
-use hc::{Run, Solutions, SolveOptions};
+use hc::{FamilyError, Run, Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -117,7 +117,10 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             (found, begun.elapsed().as_secs_f64())
         })
     })?;
-    let solved: Vec<(Solutions, f64)> = solved.map_err(|error| family::failure(file, error))?;
+    let solved: Vec<(Solutions, f64)> = solved.map_err(|error| match (error, &arguments.start) {
+        (error @ FamilyError::Misses { .. }, Some(start)) => Failure::in_file(start, error),
+        (error, _) => family::failure(file, error),
+    })?;
     if !is_lead {
         return Ok(());
     }

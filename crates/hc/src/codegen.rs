@@ -28,6 +28,19 @@ pub enum CodegenError {
     /// The program cannot be written as Rust.
     #[error(transparent)]
     Emit(#[from] EmitError),
+    /// More equations than unknowns, of which a generated solver would track combinations only.
+    #[error(
+        "{} in {}; a generated solver tracks as many equations as unknowns and checks no others: leave equations out as \
+        long as those that stay have no further solutions, or track the family itself (Family::track, hc track)",
+        counted(*.equations, "equation"),
+        counted(*.unknowns, "unknown")
+    )]
+    Overdetermined {
+        /// Number of equations.
+        equations: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
     /// The number of solutions differs from the number that the family states.
     #[error("{}, but the family states {stated}; compute the start file anew or correct `roots`", counted(*.found, "solution"))]
     Count {
@@ -85,8 +98,12 @@ pub enum CodegenError {
 /// ```
 ///
 /// # Errors
-/// If the stored solutions fail a check.
+/// If the stored solutions fail a check, or the family has more equations than unknowns.
 pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String, CodegenError> {
+    let (equations, unknowns) = (family.system().len(), family.system().variables().len());
+    if equations > unknowns {
+        return Err(CodegenError::Overdetermined { equations, unknowns });
+    }
     verify(family, &start.fibre()?)?;
     let mut options = EmitOptions::default();
     options.crate_path = "hc::poly".to_owned();
@@ -115,6 +132,7 @@ pub fn pack(family: &Family, start: &StartFile) -> Result<Vec<u8>, CodegenError>
 /// If they fail a check.
 pub fn verify(family: &Family, fibre: &Fibre) -> Result<(), CodegenError> {
     family.check(fibre)?;
+    family.check_solutions(fibre)?;
     if let Some(stated) = family.roots().filter(|&stated| stated != fibre.len()) {
         return Err(CodegenError::Count { found: fibre.len(), stated });
     }

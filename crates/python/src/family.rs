@@ -101,7 +101,7 @@ impl Family {
                 Run::new().watched(monitor).complete(&family, &first, &options)
             })?;
             let found = found.map_err(|error: FamilyError| match error {
-                FamilyError::NoPair => Failure::undetermined(error),
+                FamilyError::NoPair | FamilyError::Special { .. } => Failure::undetermined(error),
                 error => Failure::input(error),
             })?;
             let result = PyDict::new(py);

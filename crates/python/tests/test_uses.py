@@ -413,6 +413,19 @@ def test_families_with_several_orbits():
         family.monodromy(first=([4.0], [3.0]))
 
 
+def test_families_with_more_equations_than_unknowns():
+    # Three conics with the points (r, b / r), r^2 = a, in common.
+    family = hc.Family(["x^2 - a", "x*y - b", "a*y^2 - b^2"], "x y", "a b")
+    found = family.monodromy()
+    assert len(found) == 2 and found.complete and found.orbits == [2]
+    tracked = family.track([[4.0, 6.0]])
+    assert tracked.complete.all() and sorted(tracked.real_points[0].round(12).tolist()) == [[-2.0, -3.0], [2.0, 3.0]]
+    with pytest.raises(hc.InputError, match="only families of as many equations as unknowns can be certified"):
+        family.track([[4.0, 6.0]], certify=True)
+    with pytest.raises(hc.UndeterminedError, match="no solution for generic parameters"):
+        hc.Family(["x - a", "x - b"], "x", "a b").monodromy()
+
+
 def test_tables_of_other_people(tmp_path):
     import io
 

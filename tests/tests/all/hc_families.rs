@@ -328,7 +328,7 @@ fn unusable_input_is_named() {
         (
             vec!["monodromy".into(), write("c.txt", "parameters: a\nx = a*y"), "--output".into(), start.clone()],
             2,
-            "1 equation in 2 unknowns; as many equations as unknowns are needed",
+            "1 equation in 2 unknowns; at least as many equations as unknowns are needed",
         ),
         (
             vec![
@@ -360,4 +360,62 @@ fn unusable_input_is_named() {
         assert_eq!(output.status.code(), Some(*status), "{message}");
         assert!(message.contains(part) && !message.contains("panicked"), "{part:?} is not in: {message}");
     }
+}
+
+/// All minors of 2 x 3 linear forms in the plane, of rank one at three points: the degree of the variety. With a fibre, and
+/// targets in three equations of two unknowns, a user gets all three or is told which equation fails.
+#[test]
+fn families_with_more_equations_than_unknowns_are_solved() {
+    let directory = tempfile::tempdir().expect("directory");
+    let path = |name: &str| directory.path().join(name);
+    let write = |name: &str, content: &str| std::fs::write(path(name), content).expect("written");
+    let forms = [["a", "x + b", "y + c"], ["x + 2*y + d", "3*x - y + e", "2*x + 5*y + f"]];
+    let minor =
+        |j: usize, k: usize| format!("({})*({}) = ({})*({})", forms[0][j], forms[1][k], forms[0][k], forms[1][j]);
+    let equations = [minor(0, 1), minor(0, 2), minor(1, 2)].join("\n");
+    write("minors.txt", &format!("parameters: a b c d e f\n{equations}\n"));
+    write("minors.json", r#"[{"parameters": [1, 2, 3, 4, 5, 7]}, {"parameters": [3, -1, 0.5, 2, 8, -4]}]"#);
+    let [family, start, target] = ["minors.txt", "start.json", "minors.json"].map(|name| text(&path(name)).to_owned());
+    let ran = |arguments: &[&str]| {
+        let output = run("hc", arguments);
+        let [out, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
+        (output.status.code(), out, error)
+    };
+    let (status, _, error) = ran(&["monodromy", &family, "--output", &start]);
+    assert!(status == Some(0) && error.contains("3 solutions"), "{error}");
+    let (status, out, error) = ran(&["track", &family, "--start", &start, "--target", &target, "--json", "-"]);
+    assert_eq!(status, Some(0), "{error}");
+    let reports: Vec<Value> = serde_json::from_str(&out).expect("JSON");
+    let values = [[1.0, 2.0, 3.0, 4.0, 5.0, 7.0], [3.0, -1.0, 0.5, 2.0, 8.0, -4.0]];
+    for (report, [a, b, c, d, e, f]) in reports.iter().zip(values) {
+        let counts = ["finite", "failed"].map(|key| report["paths"][key].as_u64());
+        assert_eq!((counts, report["excess"].as_u64()), ([Some(3), Some(0)], Some(0)), "{report}");
+        for solution in report["solutions"].as_array().unwrap() {
+            let [x, y] = [0, 1].map(|j| {
+                let [re, im] = [0, 1].map(|k| solution["value"][j][k].as_f64().unwrap());
+                hc::Complex64::new(re, im)
+            });
+            let rows = [[x * 0.0 + a, x + b, y + c], [x + 2.0 * y + d, 3.0 * x - y + e, 2.0 * x + 5.0 * y + f]];
+            for (j, k) in [(0, 1), (0, 2), (1, 2)] {
+                assert!((rows[0][j] * rows[1][k] - rows[0][k] * rows[1][j]).norm() < 1e-10, "{solution}");
+            }
+        }
+    }
+    let (status, _, error) =
+        ran(&["track", &family, "--start", &start, "--target", &target, "--certify", "--json", "-"]);
+    assert!(status == Some(2) && error.contains("3 equations in 2 unknowns; only families of as many"), "{error}");
+    let (status, _, error) = ran(&["codegen", &family, &start, "-o", text(&path("solver.rs"))]);
+    assert!(status == Some(2) && error.contains("minors.txt") && error.contains("leave equations out"), "{error}");
+
+    write("redundant.txt", "parameters: a b\nx^2 = a\nx*y = b\na*y^2 = b^2\n");
+    write("pair.json", r#"{"parameters": [[1, 0], [1, 0]], "solutions": [[[1, 0], [3, 0]]]}"#);
+    let (redundant, pair) = (text(&path("redundant.txt")).to_owned(), text(&path("pair.json")).to_owned());
+    let (status, _, error) = ran(&["monodromy", &redundant, "--seed-pair", &pair, "--output", &start]);
+    assert!(status == Some(2) && error.contains("pair.json"), "{error}");
+    let (status, _, error) = ran(&["monodromy", &redundant, "--output", &start]);
+    assert!(status == Some(0) && error.contains("2 solutions"), "{error}");
+
+    write("special.txt", "parameters: a b\nx = a\nx = b\n");
+    let (status, _, error) = ran(&["monodromy", text(&path("special.txt")), "--output", &start]);
+    assert!(status == Some(1) && error.contains("no solution for generic parameters"), "{error}");
 }

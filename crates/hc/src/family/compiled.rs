@@ -2,6 +2,7 @@
 
 use super::error::FamilyError;
 use super::fibre::Fibre;
+use super::overdetermined::{Overdetermined, Verdict};
 use super::pair::{Beginning, MOVING_TRIES, Pairs, TRIES};
 use super::still::{Still, refined};
 use super::symmetry::Symmetry;
@@ -18,6 +19,9 @@ use std::str::FromStr;
 
 /// A compiled parameter family: its equations, the factors that must not vanish at its solutions,
 /// and its symmetries.
+///
+/// Where there are more equations than unknowns, random combinations of them are tracked, and every solution is checked
+/// against all equations. They must have solutions for generic parameters.
 ///
 /// ```
 /// use hc::{Family, MonodromyOptions};
@@ -39,7 +43,10 @@ use std::str::FromStr;
 #[derive(Debug)]
 pub struct Family {
     pub(super) given: poly::Family,
+    /// The equations that are tracked, as many as unknowns.
     pub(super) program: Interpreter,
+    /// All equations, if these are more.
+    pub(super) overdetermined: Option<Overdetermined>,
     pub(super) nonzero: Interpreter,
     pub(super) symmetry: Symmetry,
 }
@@ -48,19 +55,21 @@ impl Family {
     /// Compiles a family: a [`poly::Family`], or a [`System`] with parameters.
     ///
     /// # Errors
-    /// If a formula does not compile or the equations are not square.
+    /// If a formula does not compile, or there are fewer equations than unknowns or no unknowns.
     pub fn new(family: impl Into<poly::Family>) -> Result<Family, FamilyError> {
         let family = family.into();
-        let (program, nonzero) = (family.system.compile()?, family.nonzero.compile()?);
-        let (equations, unknowns) = (program.equations(), program.variables());
-        if equations != unknowns || unknowns == 0 {
-            return Err(FamilyError::NotSquare { equations, unknowns });
+        let (equations, unknowns) = (family.system.len(), family.system.variables().len());
+        if equations < unknowns || unknowns == 0 {
+            return Err(FamilyError::Underdetermined { equations, unknowns });
         }
+        let overdetermined = Overdetermined::new(&family.system)?;
+        let square = overdetermined.as_ref().map_or(&family.system, |more| &more.square);
+        let (program, nonzero) = (square.compile()?, family.nonzero.compile()?);
         if let Some(k) = family.symmetry.iter().position(|map| map.len() != unknowns) {
             return Err(FamilyError::Symmetry { map: k + 1, found: family.symmetry[k].len(), unknowns });
         }
         let symmetry = Symmetry::new(&family.symmetry)?;
-        Ok(Family { given: family, program, nonzero, symmetry })
+        Ok(Family { given: family, program, overdetermined, nonzero, symmetry })
     }
 
     /// A family of equations in these unknowns and parameters. A [`poly::Family`] can state more.
@@ -95,19 +104,23 @@ impl Family {
         &self.given.symmetry
     }
 
-    /// The equations as a program, for the lower layers of this crate.
+    /// The equations as a program, for the lower layers of this crate. If there are more than unknowns, these are random
+    /// combinations of them, as many as unknowns; which of their solutions solve all equations
+    /// [`accepts`](Self::accepts) tells.
     pub fn program(&self) -> &Interpreter {
         &self.program
     }
 
-    /// Whether none of the factors that the family declares nonzero vanishes at the solution `x`
-    /// (one entry per unknown) for the parameters `p` (one entry per parameter).
+    /// Whether the regular solution `x` of the [program](Self::program) (one entry per unknown) for the parameters `p`
+    /// (one entry per parameter) is one of the family: it solves all equations, and none of the factors that the family
+    /// declares nonzero vanishes.
     pub fn accepts(&self, p: &[Complex64], x: &[Complex64]) -> bool {
-        self.accepts_within(p, x, families::VANISHES)
+        self.is_inside(p, x, families::VANISHES) && self.verdict(p, x) == Verdict::Solves
     }
 
-    /// [`accepts`](Self::accepts), where values up to `tolerance` vanish.
-    pub(super) fn accepts_within(&self, p: &[Complex64], x: &[Complex64], tolerance: f64) -> bool {
+    /// Whether none of the factors that the family declares nonzero vanishes at a solution; values up to `tolerance`
+    /// vanish.
+    pub(super) fn is_inside(&self, p: &[Complex64], x: &[Complex64], tolerance: f64) -> bool {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
         self.nonzero.values(&mut memory, x, p, &mut values);
@@ -158,29 +171,35 @@ impl Family {
     /// solution. The same seed gives the same solution.
     ///
     /// # Errors
-    /// If no regular solution is found that the family accepts.
+    /// If no regular solution is found that the family accepts, or only solutions for special parameters.
     pub fn find_pair(&self, seed: u64) -> Result<Fibre, FamilyError> {
-        let pairs = Pairs::new(self.system())?;
+        let pairs = Pairs::new(self.system(), self.square())?;
         let moves = |p: &[Complex64], x: &[Complex64]| !Still::new(&self.program, p).is(x);
-        let mut still = None;
+        let (mut still, mut special) = (None, None);
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
         for attempt in 0..TRIES {
-            if still.is_some() && attempt >= MOVING_TRIES {
+            if (still.is_some() || special.is_some()) && attempt >= MOVING_TRIES {
                 break;
             }
             let Some(pair) = pairs.from(seed, attempt, &Beginning::default(), accept) else { continue };
+            if let Err(error) = self.check_generic(&pair) {
+                if matches!(error, FamilyError::Special { .. }) {
+                    special.get_or_insert(error);
+                }
+                continue;
+            }
             if moves(&pair.parameters, pair.solution(0)) {
                 return Ok(pair);
             }
             still.get_or_insert(pair);
         }
-        still.ok_or(FamilyError::NoPair)
+        still.ok_or(special.unwrap_or(FamilyError::NoPair))
     }
 
     /// The first solutions of a search, refined if they are not.
     ///
     /// # Errors
-    /// If one is not a regular solution, or far from one.
+    /// If one is not a regular solution of all equations, or far from one, or is one for special parameters only.
     pub(super) fn polished(&self, first: &Fibre) -> Result<Fibre, FamilyError> {
         let mut refiner = Refiner::new(&self.program);
         let mut polished = first.clone();
@@ -198,6 +217,8 @@ impl Family {
                 x.copy_from_slice(&refined.point);
             }
         }
+        self.check_solutions(&polished)?;
+        self.check_generic(&polished)?;
         Ok(polished)
     }
 

@@ -5,6 +5,7 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::member::{Member, most_paths};
 use super::monodromy::LoopSearch;
+use super::overdetermined::Verdict;
 use super::pair::Pairs;
 use super::search::{Monodromy, MonodromyOptions, Stopped, TraceTest};
 use super::sides::{Searched, Side};
@@ -61,6 +62,13 @@ impl Family {
         Run::new().trace_test(self, fibre, options)
     }
 
+    /// The trace test of a fibre of this family.
+    fn traced(&self, fibre: &Fibre, options: &MonodromyOptions, pieces: Pieces<'_>) -> Result<TraceTest, FamilyError> {
+        // What its digits do not tell apart from a solution is not left out of a sum.
+        let accept = |p: &[Complex64], x: &[Complex64]| !matches!(self.verdict(p, x), Verdict::Misses(_));
+        Ok(trace_test(self.square(), fibre, &accept, options, pieces)?)
+    }
+
     /// The work at rank 0, or without others.
     fn complete_led(
         &self,
@@ -98,7 +106,7 @@ impl Family {
             found.orbits.sort_unstable_by(|a, b| b.cmp(a));
         }
         if options.trace_test && matches!(found.stopped, Stopped::NoProgress | Stopped::TooMany) {
-            let test = trace_test(self.system(), &found.fibre, &options, pieces.part(TRACE))?;
+            let test = self.traced(&found.fibre, &options, pieces.part(TRACE))?;
             // What an interrupted test says is no deviation.
             found.trace = Some(test).filter(|_| !monitor.is_cancelled());
         }
@@ -124,7 +132,7 @@ impl Family {
                 continue;
             }
             if enlarged.is_none() {
-                enlarged = enlarge(self.system())?;
+                enlarged = enlarge(self.square())?;
             }
             if let Some(system) = &enlarged {
                 Searched { system, enlarged: true }.serve(worker, &task)?;
@@ -181,7 +189,11 @@ impl Family {
             Member { regular, ..member }
         });
         let is_whole = member.as_ref().is_some_and(|member| member.whole);
-        let others = if is_whole { Vec::new() } else { Pairs::new(self.system())?.others(options.seed, search.accept) };
+        let others = if is_whole {
+            Vec::new()
+        } else {
+            Pairs::new(self.system(), self.square())?.others(options.seed, search.accept)
+        };
         let seeds = || member.iter().flat_map(|member| &member.regular).map(Vec::as_slice);
         // What is one for other parameters is one for these.
         let found_still = seeds().chain(others.iter().map(|pair| pair.solution(0))).filter(|x| still.is(x));
@@ -280,7 +292,7 @@ impl Run {
     ) -> Result<TraceTest, FamilyError> {
         self.unrecorded("a trace test alone")?;
         family.check(fibre)?;
-        self.install(|| Ok(trace_test(family.system(), fibre, options, Pieces::alone(self.monitor()))?))
+        self.install(|| family.traced(fibre, options, Pieces::alone(self.monitor())))
     }
 }
 

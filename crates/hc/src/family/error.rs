@@ -24,9 +24,9 @@ pub enum FamilyError {
     /// Other processes cannot take part.
     #[error(transparent)]
     Ranks(#[from] RanksError),
-    /// The number of equations differs from the number of unknowns, or is zero.
-    #[error("{} in {}; as many equations as unknowns are needed, and at least one", counted(*.equations, "equation"), counted(*.unknowns, "unknown"))]
-    NotSquare {
+    /// There are fewer equations than unknowns, or no unknowns.
+    #[error("{} in {}; at least as many equations as unknowns are needed, and at least one unknown", counted(*.equations, "equation"), counted(*.unknowns, "unknown"))]
+    Underdetermined {
         /// Number of equations.
         equations: usize,
         /// Number of unknowns.
@@ -95,6 +95,39 @@ pub enum FamilyError {
     FirstSingular {
         /// The solution, from 1.
         solution: usize,
+    },
+    /// A solution of combinations of the equations, or none at all, in place of one of all equations.
+    #[error(
+        "solution {solution} is none for its parameters: equation {equation} does not hold there; correct it, or let \
+        the fibre be computed anew"
+    )]
+    Misses {
+        /// The solution, from 1.
+        solution: usize,
+        /// The equation, from 1.
+        equation: usize,
+    },
+    /// More equations than unknowns that have solutions for special parameters only.
+    #[error(
+        "the equations have no solution for generic parameters, as far as was seen: equation {equation} ceases to hold \
+        when the parameters of a solution of all equations move; correct the equations, or, if parameters depend on \
+        each other, write these in independent ones"
+    )]
+    Special {
+        /// The equation, from 1.
+        equation: usize,
+    },
+    /// Certificates are asked for of more equations than unknowns.
+    #[error(
+        "{} in {}; only families of as many equations as unknowns can be certified; leave the certificates out",
+        counted(*.equations, "equation"),
+        counted(*.unknowns, "unknown")
+    )]
+    Uncertifiable {
+        /// Number of equations.
+        equations: usize,
+        /// Number of unknowns.
+        unknowns: usize,
     },
     /// No first solution was found.
     #[error("no regular solution was found for any parameters; give a pair of parameters and solution")]

@@ -27,9 +27,9 @@ pub(super) struct Member {
     pub(super) paths: usize,
     /// Whether every path is accounted for.
     pub(super) whole: bool,
-    /// The regular solutions that the family accepts.
+    /// The regular solutions at which no factor vanishes that must not.
     pub(super) regular: Vec<Vec<Complex64>>,
-    /// The others that it accepts.
+    /// The others of these.
     pub(super) multiple: Vec<Multiple>,
 }
 
@@ -42,7 +42,7 @@ impl Family {
     /// The member with these parameters, unless that takes more than so many paths, or has no start system.
     pub(super) fn member(&self, parameters: &[Complex64], most: u64, seed: u64, monitor: &Monitor) -> Option<Member> {
         let system = self.system().at(parameters).ok()?;
-        if bezout_number(&system.degrees_as_written()?)? > LARGEST {
+        if bezout_number(&self.square().degrees_as_written()?)? > LARGEST {
             return None;
         }
         let found = self.member_with(&system, parameters, &quick(most).seed(seed), monitor)?;
@@ -68,7 +68,7 @@ impl Family {
         let found = Run::new().watched(&limited).solve(system, options).ok().filter(|found| !found.interrupted)?;
         let accepted = |s: &&Solution| {
             let tolerance = if s.singular { families::VANISHES_SINGULAR } else { families::VANISHES };
-            self.accepts_within(parameters, &s.value, tolerance)
+            self.is_inside(parameters, &s.value, tolerance)
         };
         let (singular, regular): (Vec<&Solution>, Vec<&Solution>) =
             found.iter().filter(accepted).partition(|s| s.singular);

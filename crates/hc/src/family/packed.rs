@@ -153,7 +153,7 @@ pub fn unpack_fibre<E: Evaluate>(system: &E, bytes: &[u8]) -> Result<Fibre, Pack
 
 fn fits<E: Evaluate>(system: &E, parameters: usize, unknowns: usize) -> Result<(), FamilyError> {
     if system.variables() == 0 {
-        return Err(FamilyError::NotSquare { equations: system.equations(), unknowns: 0 });
+        return Err(FamilyError::Underdetermined { equations: system.equations(), unknowns: 0 });
     }
     FamilyError::unless_fits(system, parameters, unknowns)
 }

@@ -1,7 +1,9 @@
 //! A first solution of a family: one pair of parameters and unknowns.
 //!
 //! Newton's method runs in unknowns and parameters together, from a random complex point. The
-//! equations are underdetermined, so the correction of least length is taken (Gauss-Newton).
+//! equations are underdetermined, so the correction of least length is taken (Gauss-Newton). Where there are more
+//! equations than unknowns, the rows of their Jacobian are dependent at the solutions that are sought, and corrections
+//! are damped, by the size of the residual (Levenberg-Marquardt; Fan & Yuan 2005, Computing 74:23).
 
 use super::error::FamilyError;
 use super::fibre::Fibre;
@@ -18,6 +20,9 @@ pub(super) const TRIES: u64 = 1000;
 /// Of these, points tried for a solution that parameters move, if one is known that none moves.
 pub(super) const MOVING_TRIES: u64 = 100;
 const MAX_ITERATIONS: usize = 60;
+/// Damping of corrections, in sizes of residual and Jacobian, and the least one in squares of the latter.
+const DAMPING: f64 = 1e-2;
+const LEAST_DAMPING: f64 = 1e-14;
 /// Other first pairs, and how often each is tried to be found; fewer from points of other sizes than one, and with
 /// unknowns that are zero.
 const PAIRS: u64 = 48;
@@ -45,19 +50,20 @@ impl Default for Beginning {
     }
 }
 
-/// What first pairs of a square system are sought with.
+/// What first pairs are sought with.
 pub(super) struct Pairs {
+    /// As many equations as unknowns.
     compiled: Interpreter,
-    /// With parameters as further unknowns.
+    /// All equations, with parameters as further unknowns.
     free: Interpreter,
 }
 
 impl Pairs {
-    /// For a system with as many equations as unknowns.
+    /// For a system, and one with as many equations as unknowns that has all its solutions.
     ///
     /// # Errors
     /// If the formulas cannot be compiled.
-    pub(super) fn new(system: &System) -> Result<Pairs, FamilyError> {
+    pub(super) fn new(system: &System, square: &System) -> Result<Pairs, FamilyError> {
         let free = System::build(|s| {
             let unknowns: Vec<_> = system.variables().iter().map(|name| s.variable(name)).collect();
             let parameters: Vec<_> = system.parameters().iter().map(|name| s.variable(name)).collect();
@@ -65,7 +71,7 @@ impl Pairs {
         });
         // The names and constants come from a system that exists already.
         let free = free.map_err(|_| FamilyError::NoPair)?;
-        Ok(Pairs { compiled: system.compile()?, free: free.compile()? })
+        Ok(Pairs { compiled: square.compile()?, free: free.compile()? })
     }
 
     /// A regular solution for some generic parameters that `accept` is content with, from the random point of a seed
@@ -81,7 +87,8 @@ impl Pairs {
         let mut z = Random::of(seed, Stream::Member(number)).normals(n + m);
         z[..n].iter_mut().for_each(|x| *x *= beginning.size);
         beginning.zero.iter().for_each(|&j| z[j] = Complex64::default());
-        if !gauss_newton(&self.free, &mut z) {
+        let damping = if self.free.equations() > n { DAMPING } else { 0.0 };
+        if !gauss_newton(&self.free, &mut z, damping) {
             return None;
         }
         let parameters = z[n..].to_vec();
@@ -109,7 +116,8 @@ impl Pairs {
     }
 
     /// The sets of unknowns that as many equations as they are lead to be zero: these equations hold
-    /// wherever the unknowns of the set are zero, and no others do.
+    /// wherever the unknowns of the set are zero, and as many as there are other unknowns do not. If there are more
+    /// equations than unknowns, either may be more.
     fn zeros(&self) -> Vec<Vec<usize>> {
         let n = self.compiled.variables();
         let sets: Vec<Vec<usize>> = if n <= MANY_UNKNOWNS {
@@ -118,21 +126,24 @@ impl Pairs {
             (0..n).map(|j| vec![j]).chain([(0..n).collect()]).collect()
         };
         let mut random = Random::of(0, Stream::Elsewhere);
-        let (x, p) = (random.normals(n), random.normals(self.compiled.parameters()));
-        let mut memory = self.compiled.memory(Isa::Portable);
-        let mut values = vec![Complex64::default(); n];
+        let mut z = random.normals(n);
+        z.extend(random.normals(self.compiled.parameters()));
+        let mut memory = self.free.memory(Isa::Portable);
+        let mut values = vec![Complex64::default(); self.free.equations()];
         let mut holds = |set: &Vec<usize>| {
-            let mut x = x.clone();
-            set.iter().for_each(|&j| x[j] = Complex64::default());
-            self.compiled.values(&mut memory, &x, &p, &mut values);
-            values.iter().filter(|value| value.norm() <= f64::EPSILON).count() == set.len()
+            let mut z = z.clone();
+            set.iter().for_each(|&j| z[j] = Complex64::default());
+            self.free.values(&mut memory, &z, &[], &mut values);
+            let hold = values.iter().filter(|value| value.norm() <= f64::EPSILON).count();
+            hold >= set.len() && values.len() - hold >= n - set.len()
         };
         sets.into_iter().filter(|set| holds(set)).take(MOST_SETS).collect()
     }
 }
 
-/// Moves `z` to a zero of fewer equations than unknowns; false if the corrections do not vanish.
-fn gauss_newton<E: Evaluate>(system: &E, z: &mut [Complex64]) -> bool {
+/// Moves `z` to a zero of equations whose zeros are no isolated points; false if the corrections do not vanish.
+/// Corrections are damped unless `damping` is zero, which serves where equations are independent.
+fn gauss_newton<E: Evaluate>(system: &E, z: &mut [Complex64], damping: f64) -> bool {
     let (rows, columns) = (system.equations(), system.variables());
     let zero = Complex64::new(0.0, 0.0);
     let mut memory = system.memory(Isa::Portable);
@@ -142,11 +153,17 @@ fn gauss_newton<E: Evaluate>(system: &E, z: &mut [Complex64]) -> bool {
     let ones = vec![[1.0]; rows];
     for _ in 0..MAX_ITERATIONS {
         system.jacobian(&mut memory, z, &[], &mut values, &mut jacobian);
-        // dz = J^H (J J^H)^{-1} F
+        // dz = J^H (J J^H + damping)^{-1} F
         for a in 0..rows {
             for b in 0..rows {
                 gram[b * rows + a] = (0..columns).map(|j| jacobian[j * rows + a] * jacobian[j * rows + b].conj()).sum();
             }
+        }
+        if damping > 0.0 {
+            let squared: f64 = (0..rows).map(|a| gram[a * rows + a].re).sum();
+            let residual = values.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+            let damping = damping * residual * squared.sqrt() + LEAST_DAMPING * squared;
+            (0..rows).for_each(|a| gram[a * rows + a] += damping);
         }
         lu.factor(&gram, &ones);
         lu.solve(&mut values);

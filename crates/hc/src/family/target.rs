@@ -7,12 +7,13 @@
 use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
+use super::overdetermined::Verdict;
 use super::symmetry::Symmetry;
 use super::track::{moved as moved_fibre, track_fibre};
 use crate::distinct::coincidences;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
-use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
+use crate::solve::{Solution, Solutions, SolveOptions, Stray, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
@@ -49,8 +50,12 @@ impl TargetTracking<'_> {
         let solve = |from: &Fibre, retries: u32, again: usize| {
             let paths = FibreOptions { retries, again: Some(again), ..given.clone() };
             let options = SolveOptions { paths, ..self.options.clone() };
-            let mut found = solve_member(self.family.system(), trackers, from, target, &options, monitor);
+            let systems = [self.family.system(), self.family.square()];
+            let misses = |x: &[Complex64]| matches!(self.family.verdict(target, x), Verdict::Misses(_));
+            let stray = self.family.overdetermined.as_ref().map(|_| &misses as &Stray<'_>);
+            let mut found = solve_member(systems, trackers, from, target, stray, &options, monitor);
             self.family.keep_own(target, &mut found);
+            self.family.keep_solving(target, &mut found);
             found
         };
         let (count, again) = (fibre.len(), given.again.unwrap_or(usize::MAX));

@@ -135,6 +135,11 @@ impl<'a> Targets<'a> {
         tracking.family.check(tracking.fibre)?;
         tracking.options.validate()?;
         tracking.limits.validate()?;
+        let system = tracking.family.system();
+        let (equations, unknowns) = (system.len(), system.variables().len());
+        if tracking.options.certify && equations > unknowns {
+            return Err(FamilyError::Uncertifiable { equations, unknowns });
+        }
         let parameters = tracking.fibre.parameters.len();
         let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
         match targets.iter().position(unusable) {
@@ -152,6 +157,7 @@ impl<'a> Targets<'a> {
         self.validate()?;
         let Targets { tracking, targets, enough, run: RanksRun { run: circumstances, .. } } = self;
         let checkpoint = circumstances.checkpoint();
+        tracking.family.check_solutions(tracking.fibre)?;
         let orbits = Orbits::of(tracking.family, tracking.fibre)?;
         if let Some(checkpoint) = checkpoint {
             checkpoint.begin(job(&tracking, &targets))?;

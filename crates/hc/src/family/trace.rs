@@ -27,7 +27,11 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
 
-/// The trace test of a fibre of `system`: whether it is a union of whole orbits.
+/// Whether a point is wanted, for its parameters.
+type Accept<'a> = dyn Fn(&[Complex64], &[Complex64]) -> bool + 'a;
+
+/// The trace test of a fibre of `system`: whether it is a union of whole orbits. If some solutions of the system do not
+/// count, `accept` refuses those, which are whole orbits.
 ///
 /// The line and the hypersurface move by the natural sizes of parameters and unknowns, unless the family
 /// looks simpler on that scale than it is. If the test shows nothing, they move as far as single
@@ -35,6 +39,7 @@ use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
 pub(super) fn trace_test(
     system: &System,
     fibre: &Fibre,
+    accept: &Accept<'_>,
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
 ) -> Result<TraceTest, CompileError> {
@@ -55,7 +60,7 @@ pub(super) fn trace_test(
     };
     let mut test = FAILED;
     for (sizes, part) in all.iter().zip((0..).step_by(3)) {
-        test = on_sizes(&searched, &moving, &still, sizes, options, pieces.part(part));
+        test = on_sizes(&searched, &moving, &still, accept, sizes, options, pieces.part(part));
         if test.passed(moving.len()) {
             break;
         }
@@ -71,6 +76,7 @@ fn on_sizes<E: Evaluate>(
     enlarged: &Searched<'_, E>,
     fibre: &Fibre,
     still: &Still<'_, E>,
+    accept: &Accept<'_>,
     sizes: &Sizes,
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
@@ -116,8 +122,11 @@ fn on_sizes<E: Evaluate>(
     let mut search = options.clone();
     search.roots = None;
     let (is_still, symmetry) = (|z: &[Complex64]| still.is(&z[..n]), &Symmetry::default());
-    let filled =
-        LoopSearch { searched: enlarged, accept: &|_, _| true, is_still: &is_still, symmetry, options: &search };
+    let accept = |q: &[Complex64], z: &[Complex64]| {
+        let on_line: Vec<Complex64> = (0..m).map(|k| q[k] + z[n] * q[m + k]).collect();
+        accept(&on_line, &z[..n])
+    };
+    let filled = LoopSearch { searched: enlarged, accept: &accept, is_still: &is_still, symmetry, options: &search };
     let filled = filled.fill(&start, pieces.part(1)).fibre;
 
     let ends = pieces.part(2);

@@ -121,20 +121,16 @@ impl ScaledEquations {
     /// then the product of the highest degrees. They have all solutions of these equations, and
     /// excess ones.
     pub(super) fn squared(&self, seed: u64, fixed: &[usize]) -> ScaledEquations {
-        let mut order: Vec<usize> = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
-        order.sort_by_key(|&i| std::cmp::Reverse(self.degree(i)));
-        let (kept, others) = order.split_at(self.unknowns - fixed.len());
-        let mut random = Random::of(seed, Stream::Combinations);
+        let order = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
+        let count = self.unknowns - fixed.len();
         let mut squared = ScaledEquations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
-        for &i in kept {
+        for combination in combinations(order, |i| self.degree(i), count, seed) {
             let mut sum: BTreeMap<&[i32], Complex64> = BTreeMap::new();
-            let mut add = |k: usize, factor: Complex64| {
+            for (k, factor) in combination {
                 for (point, c) in self.supports[k].iter().zip(&self.coefficients[k]) {
                     *sum.entry(point).or_default() += factor * c;
                 }
-            };
-            add(i, Complex64::new(1.0, 0.0));
-            others.iter().for_each(|&k| add(k, random.unit()));
+            }
             squared.supports.push(sum.keys().map(|p| p.to_vec()).collect());
             squared.coefficients.push(sum.into_values().collect());
         }
@@ -182,6 +178,24 @@ impl ScaledEquations {
             *z *= s;
         }
     }
+}
+
+/// How equations are combined to `count` of them: those of highest degree, each with random multiples of all the
+/// remaining ones added, as numbers of equations with factors. `order` has the numbers; there are `count` at least.
+pub(crate) fn combinations(
+    mut order: Vec<usize>,
+    degree: impl Fn(usize) -> i64,
+    count: usize,
+    seed: u64,
+) -> Vec<Vec<(usize, Complex64)>> {
+    order.sort_by_key(|&i| std::cmp::Reverse(degree(i)));
+    let (kept, others) = order.split_at(count);
+    let mut random = Random::of(seed, Stream::Combinations);
+    let mut combined = |&i: &usize| {
+        let added = others.iter().map(|&k| (k, random.unit()));
+        [(i, Complex64::new(1.0, 0.0))].into_iter().chain(added).collect()
+    };
+    kept.iter().map(&mut combined).collect()
 }
 
 /// Whether rows are clearly independent, by Gram and Schmidt's orthogonalisation.

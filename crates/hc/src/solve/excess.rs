@@ -4,6 +4,9 @@ use crate::singular::{self, ExactEquations};
 use crate::tolerances::ends;
 use num_complex::Complex64;
 
+/// Says of a regular end that no path leads there that has not jumped.
+pub(crate) type Stray<'a> = dyn Fn(&[Complex64]) -> bool + Sync + 'a;
+
 /// Which points were not requested.
 pub(super) struct Excess<'a> {
     /// All equations, if there are more equations than unknowns.
@@ -11,17 +14,28 @@ pub(super) struct Excess<'a> {
     torus_only: bool,
     /// The coordinates that must not vanish there, the first ones.
     unknowns: usize,
+    stray: Option<&'a Stray<'a>>,
 }
 
 impl<'a> Excess<'a> {
     /// What was not requested of given equations, of which the first `unknowns` unknowns count.
     pub(super) fn new(given: Option<&'a ExactEquations>, torus_only: bool, unknowns: usize) -> Excess<'a> {
-        Excess { all: given.filter(|given| given.len() > given.unknowns()), torus_only, unknowns }
+        Excess { all: given.filter(|given| given.len() > given.unknowns()), torus_only, unknowns, stray: None }
     }
 
     /// No point is excess: every point that is found was requested.
     pub(super) fn none() -> Excess<'static> {
-        Excess { all: None, torus_only: false, unknowns: 0 }
+        Excess { all: None, torus_only: false, unknowns: 0, stray: None }
+    }
+
+    /// No point is excess, but paths that end at some have jumped.
+    pub(super) fn with_stray(stray: Option<&'a Stray<'a>>) -> Excess<'a> {
+        Excess { stray, ..Excess::none() }
+    }
+
+    /// Whether a path with this regular end has jumped.
+    pub(super) fn is_stray(&self, point: &[Complex64]) -> bool {
+        self.stray.is_some_and(|stray| stray(point))
     }
 
     /// Whether a regular end was not requested: it does not solve all equations, or lies outside

@@ -2,7 +2,7 @@
 
 use super::classify::{Expanded, Tracked};
 use super::ends::Ends;
-use super::excess::Excess;
+use super::excess::{Excess, Stray};
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
 use super::polynomials::solve_cluster;
@@ -16,20 +16,25 @@ use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
+use std::borrow::Cow;
 
-/// The isolated solutions of the member of `family` at the parameters `target`, from those at the
-/// parameters of `fibre`, all of which are tracked. `trackers` belong to the compiled family. The
-/// result does not know its member yet ([`Solutions::of_member`]).
+/// The isolated solutions of the member of a family at the parameters `target`, from those at the
+/// parameters of `fibre`, all of which are tracked. `trackers` belong to the second system, which is square: the family,
+/// or combinations of it that have all its solutions. Regular ends are solutions of these, and paths to the `stray` ones
+/// are tracked again; singular ends are judged by the family. The result does not know its member yet
+/// ([`Solutions::of_member`]).
 pub(crate) fn solve_member<E: Evaluate>(
-    family: &System,
+    systems: [&System; 2],
     trackers: &Trackers<'_, E>,
     fibre: &Fibre,
     target: &[Complex64],
+    stray: Option<&Stray<'_>>,
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Solutions {
-    let ends = followed(trackers, fibre, target, options, monitor);
-    let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
+    let excess = &Excess::with_stray(stray);
+    let ends = followed(trackers, fibre, target, excess, options, monitor);
+    let expanded = if !ends.singular.is_empty() { expanded(systems, target, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
     let tracked = expanded.as_ref().map(|(expanded, system, target)| Tracked {
@@ -42,7 +47,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         solve_cluster: Some(&solver),
     });
     let (retracked, bounded) = (ends.retracked, ends.bounded);
-    let mut ends = ends.judged(tracked.as_ref(), &Excess::none(), options.paths.coincidence);
+    let mut ends = ends.judged(tracked.as_ref(), excess, options.paths.coincidence);
     let lost = ends.lost() > 0;
     let limited = (bounded && lost).then_some(Limit::Again);
     Solutions { start_systems: 1, interrupted: monitor.is_cancelled() && lost, limited, ..ends.solutions(retracked) }
@@ -64,7 +69,7 @@ pub(crate) fn ends<E: Evaluate>(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> impl Iterator<Item = Vec<Complex64>> {
-    let ends = followed(&Trackers::new(family), fibre, target, options, monitor);
+    let ends = followed(&Trackers::new(family), fibre, target, &Excess::none(), options, monitor);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }
@@ -74,25 +79,30 @@ fn followed<E: Evaluate>(
     trackers: &Trackers<'_, E>,
     fibre: &Fibre,
     target: &[Complex64],
+    excess: &Excess<'_>,
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Ends {
-    let (count, excess) = (fibre.len(), &Excess::none());
+    let count = fibre.len();
     follow(Route { trackers, start: fibre, count, target, excess, options, monitor, record: None, lead: None }, false)
 }
 
-/// The polynomials of a member, and their supports and coefficients.
+/// The polynomials of a member, and the supports and coefficients of those that are tracked.
 fn expanded(
-    family: &System,
+    [family, square]: [&System; 2],
     target: &[Complex64],
     monitor: &Monitor,
 ) -> Option<(Expanded<'static>, PathSystem, Vec<Complex64>)> {
-    let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
+    let at_target = |system: &System| system.at(target).ok()?.expand(&Default::default()).ok();
+    let polynomials = at_target(family)?;
     let unknowns = family.variables().len();
-    let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
-    let terms = polynomials.iter().flat_map(|p| p.terms());
+    let is_square = polynomials.len() == unknowns;
+    let tracked = if is_square { Cow::Borrowed(&polynomials) } else { Cow::Owned(at_target(square)?) };
+    let supports: Vec<Vec<Vec<i32>>> = tracked.iter().map(Polynomial::support).collect();
+    let terms = tracked.iter().flat_map(|p| p.terms());
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
     let system = PathSystem::of_terms(SparseSystem::new(unknowns, &supports).ok()?);
     let target = numbers.collect::<Option<_>>()?;
-    Some((Expanded::new(polynomials, vec![0; unknowns], true, monitor), system, target))
+    // Combinations are rounded.
+    Some((Expanded::new(polynomials, vec![0; unknowns], is_square, monitor), system, target))
 }

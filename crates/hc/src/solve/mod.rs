@@ -24,7 +24,9 @@ mod summary;
 mod warning;
 mod written;
 
+pub(crate) use equations::combinations;
 pub use error::SolveError;
+pub(crate) use excess::Stray;
 pub(crate) use formulas::Formulas;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
@@ -32,6 +34,7 @@ pub(crate) use polynomials::{SolveContext, solve_polynomials};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
+pub(crate) use written::sizes;
 
 use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;

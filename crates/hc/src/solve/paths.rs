@@ -49,7 +49,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) count: usize,
     /// The parameters to which they lead.
     pub(super) target: &'a [Complex64],
-    /// Regular ends that are excess do not count as [known](SolveOptions::known) solutions.
+    /// Regular ends that are excess do not count as [known](SolveOptions::known) solutions; stray ones are in doubt.
     pub(super) excess: &'a Excess<'a>,
     pub(super) options: &'a SolveOptions,
     pub(super) monitor: &'a Monitor,
@@ -285,10 +285,12 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         which
     }
 
-    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in an
+    /// Paths that are lost, share a start or a regular end, have a stray one, have crossed on the way, or end in an
     /// incomplete cycle. If the stored data about paths cannot be read, all paths.
     fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
+        let stray = self.ends.regular.iter().filter(|(_, end)| self.route.excess.is_stray(&end.point));
+        which.extend(stray.map(|(&k, _)| k));
         let crossed =
             [self.starts.coinciding(self.route.options.paths.coincidence), self.middles.coinciding(ends::CROSSED)];
         if crossed.iter().any(Result::is_err) {

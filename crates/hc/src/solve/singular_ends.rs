@@ -92,22 +92,32 @@ impl Ends {
             }
         }
         self.reassign(further, End::LOST, End::SOLUTION);
-        self.add_multiple(multiple, simple, excess);
+        let is_conserved = excess.overdetermined() || tracked.expanded.given.len() <= tracked.expanded.given.unknowns();
+        self.add_multiple(multiple, simple, is_conserved, excess);
         if self.lost() == 0 {
             self.unresolved.clear();
         }
     }
 
     /// Adds multiple solutions with the paths that end there; as many `simple` ones in place of each if all
-    /// solutions are known to be simple.
-    fn add_multiple(&mut self, multiple: Vec<(Solution, Vec<usize>)>, simple: bool, excess: &Excess<'_>) {
+    /// solutions are known to be simple. As many paths as the multiplicity end there if the number of solutions
+    /// `is_conserved`; from the solutions of more equations than unknowns alone there may be fewer.
+    fn add_multiple(
+        &mut self,
+        multiple: Vec<(Solution, Vec<usize>)>,
+        simple: bool,
+        is_conserved: bool,
+        excess: &Excess<'_>,
+    ) {
         let mut missing = 0;
         for (solution, paths) in multiple {
             // As many paths as the multiplicity, or more where equations were combined. Where they
             // are fewer others are lost, else some have gone astray.
             let here = if excess.overdetermined() { paths.len() } else { solution.multiplicity.min(paths.len()) };
             self.assign(&paths[here..], End::LOST);
-            missing += solution.multiplicity.saturating_sub(paths.len());
+            if is_conserved {
+                missing += solution.multiplicity.saturating_sub(paths.len());
+            }
             if simple {
                 // They are one point to all digits of a double.
                 let Solution { value, multiplicity, residual, condition, .. } = solution;

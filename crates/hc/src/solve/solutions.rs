@@ -17,7 +17,7 @@ pub struct Solution {
     /// The coordinates, in the order of the unknowns.
     pub value: Vec<Complex64>,
     /// Multiplicity: the dimension of the local ring of the given equations. As many paths end
-    /// here, or more if there are more equations than unknowns.
+    /// here. If there are more equations than unknowns, they may be more, and fewer from a fibre.
     pub multiplicity: usize,
     /// The largest winding number of these paths.
     pub winding_number: usize,
@@ -102,7 +102,7 @@ pub struct Solutions {
     /// The multihomogeneous Bezout number of the given groups; `None` as above, or without groups.
     pub multihomogeneous_number: Option<u64>,
     /// How the paths ended. `finite` counts all ends at solutions, including singular solutions,
-    /// solutions on components and excess solutions.
+    /// solutions on components and excess solutions of `solve`.
     pub paths: PathCounts,
     /// Paths that ended on components of positive dimension.
     pub on_components: usize,
@@ -110,7 +110,8 @@ pub struct Solutions {
     pub component_points: Vec<Vec<Complex64>>,
     /// Paths that ended at points that were not requested: points that solve only random
     /// combinations of more equations than unknowns, and points outside the torus if only the torus
-    /// was requested.
+    /// was requested. Those of a tracked [`Family`](crate::Family) count as failed too: its paths begin at solutions of
+    /// all equations, and those that end elsewhere have jumped.
     pub excess: usize,
     /// The directions in which paths went to infinity.
     pub directions: Vec<Direction>,

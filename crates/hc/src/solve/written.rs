@@ -56,15 +56,17 @@ fn divided(system: &System, sizes: &[i64]) -> Option<Interpreter> {
     built.ok()?.compile().ok()
 }
 
-/// Logarithms to base 2 of the geometric means of the formulas, rounded.
-fn sizes(program: &Interpreter, seed: u64) -> Option<Vec<i64>> {
+/// Logarithms to base 2 of the geometric means of the formulas, rounded, where unknowns and parameters are of modulus
+/// one; `None` if they are out of range.
+pub(crate) fn sizes(program: &Interpreter, seed: u64) -> Option<Vec<i64>> {
     let mut random = Random::of(seed, Stream::Sizes);
     let mut memory = program.memory(Isa::Portable);
     let mut values = vec![Complex64::new(0.0, 0.0); program.equations()];
     let mut sums = vec![0.0; program.equations()];
     for _ in 0..POINTS {
         let point: Vec<Complex64> = (0..program.variables()).map(|_| random.unit()).collect();
-        program.values(&mut memory, &point, &[], &mut values);
+        let parameters: Vec<Complex64> = (0..program.parameters()).map(|_| random.unit()).collect();
+        program.values(&mut memory, &point, &parameters, &mut values);
         sums.iter_mut().zip(&values).for_each(|(sum, value)| *sum += value.norm().log2());
     }
     sums.iter().map(|sum| Some(sum / POINTS as f64).filter(|mean| mean.is_finite()).map(|m| m.round() as i64)).collect()

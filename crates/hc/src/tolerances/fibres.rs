@@ -32,6 +32,11 @@ pub(crate) mod families {
     pub(crate) const ACCURATE: f64 = 1e-12;
     /// Accuracy to which the end of a path that is carried back from another chart must be known.
     pub(crate) const CARRIED: f64 = 1e-8;
+    /// Relative values of equations in double-double up to which a regular solution of combinations of them solves
+    /// all: the errors of a solution of condition 1e10.
+    pub(crate) const SOLVES: f64 = 1e-20;
+    /// Relative values from which on it does not; between the two its digits do not tell.
+    pub(crate) const MISSES: f64 = 1e-12;
     /// The ratio of one scale of loops to the next.
     pub(crate) const LOOP_SCALE: f64 = 4.0;
     /// The ratio of one scale that is tried for the reach of a fibre to the next.

@@ -9,6 +9,7 @@ mod conics;
 mod generators;
 mod mixed_volume;
 mod orbits;
+mod overdetermined;
 mod runs;
 mod scales;
 mod singular;

@@ -193,7 +193,9 @@ class Family:
     Parameters
     ----------
     equations : str, or sequence of str or SymPy expressions
-        As many equations as unknowns; or one text with everything: plain, with a line `parameters: a b`, or TOML.
+        At least as many equations as unknowns, which have solutions for generic parameters; or one text with everything:
+        plain, with a line `parameters: a b`, or TOML. If there are more than unknowns, combinations are tracked, and each
+        solution is checked against all equations.
     unknowns : sequence of str or symbols, optional
         By default all names in SymPy expressions that are no parameters, sorted by name.
     parameters : sequence of str or symbols, optional
