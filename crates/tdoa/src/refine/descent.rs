@@ -10,12 +10,6 @@ use hc::Monitor;
 const FIRST: f64 = 1e-3;
 const LEAST: f64 = 1e-9;
 
-/// Share of the cost by which rounding makes it larger.
-const ROUNDING: f64 = 1e-14;
-
-/// Share of the decrease that counts, below which none is looked for.
-pub(super) const WORTH: f64 = 0.1;
-
 /// Damping from which on a step is no more tried, and that with which the next one begins at most.
 const HOPELESS: f64 = 1e8;
 const MOST: f64 = 1e2;
@@ -60,12 +54,13 @@ impl<'a, const D: usize> Descent<'a, D> {
     }
 
     /// A step by the normal equations, more and more damped until the cost is below `cost`; returns what it
-    /// is then, `None` where no step lowers it, or none promises to lower it by `worth`.
+    /// is then, `None` where no step lowers it. A cost that is larger by no more than the share `flat` ends the
+    /// attempts.
     pub(super) fn step_down(
         &mut self,
         network: &mut Network<D>,
         cost: f64,
-        worth: f64,
+        flat: f64,
         total: impl Fn(&[f64]) -> f64,
         monitor: &Monitor,
     ) -> Result<Option<f64>, Cancelled> {
@@ -82,9 +77,7 @@ impl<'a, const D: usize> Descent<'a, D> {
                     lower = Some(next);
                     break;
                 }
-                // Damped more, a step promises less.
-                let is_hopeless = self.damping <= FIRST && self.normal.promised() < worth;
-                if is_hopeless || next - cost <= ROUNDING * cost.abs() {
+                if next - cost <= flat * cost.abs() {
                     break;
                 }
             }

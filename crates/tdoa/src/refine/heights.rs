@@ -24,9 +24,6 @@ use std::f64::consts::TAU;
 /// Most rounds of fitting network and heights in turn.
 const ROUNDS: usize = 60;
 
-/// Steps of fitting the network in a round: the next round goes on from there.
-const STEPS: usize = 6;
-
 /// Relative change of the deviations that ends the rounds.
 const STILL: f64 = 5e-3;
 
@@ -91,7 +88,7 @@ impl<const D: usize> Heights<D> {
         };
         for _ in 0..ROUNDS {
             let pinned = observations.clone().pinned(&now.pins());
-            let fit = RefineOptions { scale: Some(1.0), steps: STEPS, rounds: 0, tolerance: 1e-9, ..SEARCH };
+            let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
             now.network = NetworkRefiner::new(&pinned, f64::INFINITY, monitor).refine(now.network, &fit).network;
             check(monitor)?;
             let Some(uncertainty) = covariance(&pinned, &now.network, now.deviation, monitor)? else { return Ok(None) };

@@ -339,15 +339,6 @@ impl<const D: usize> Normal<D> {
         }
     }
 
-    /// By how much the step of the last `solve` lowers the cost, to first order.
-    pub(crate) fn promised(&self) -> f64 {
-        let steps = self.receiver_steps.chunks_exact(D);
-        let of_receivers = self.receiver_blocks.iter().zip(steps).flat_map(|((_, g), step)| g.iter().zip(step));
-        let of_receivers: f64 = of_receivers.map(|(g, step)| g * step).sum();
-        let of_transmitters = self.transmitter_blocks.iter().zip(&self.transmitter_steps);
-        of_receivers + of_transmitters.map(|((_, g), step)| dot(g.0, step.0) + g.1 * step.1).sum::<f64>()
-    }
-
     /// `target` = `network` + step.
     pub(crate) fn step(&self, network: &Network<D>, target: &mut Network<D>) {
         for (i, (to, from)) in target.receivers.iter_mut().zip(&network.receivers).enumerate() {

@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt steps with annealing of the scale, in rounds of reseeding.
 
 use super::cancel::Cancelled;
-use super::descent::{Descent, WORTH};
+use super::descent::Descent;
 use super::normal::Normal;
 use super::reseed::reseed;
 use crate::loss::Loss;
@@ -128,9 +128,8 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             }
             descent.normal.linearise(observations, &network, &descent.residuals, &loss);
             let total = |residuals: &[f64]| loss.total(residuals.iter().copied());
-            let least = options.tolerance * cost.abs();
-            let Ok(lower) = descent.step_down(&mut network, cost, WORTH * least, total, monitor) else { break };
-            let improved = lower.is_some_and(|next| cost - next > least);
+            let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, total, monitor) else { break };
+            let improved = lower.is_some_and(|next| cost - next > options.tolerance * cost.abs());
             annealed *= options.anneal_factor;
             let before = loss.scale;
             loss.scale = match options.scale {

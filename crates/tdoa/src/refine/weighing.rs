@@ -1,13 +1,10 @@
 //! Refinement under any cost of single residuals.
 
 use super::cancel::{Cancelled, check};
-use super::descent::{Descent, WORTH};
+use super::descent::Descent;
 use crate::network::Network;
 use crate::observations::Observations;
 use hc::Monitor;
-
-/// Relative decrease of the cost that ends a descent.
-const TOLERANCE: f64 = 1e-10;
 
 /// Damping that makes the determinant of a free network finite.
 const GAUGE: f64 = 1e-9;
@@ -56,9 +53,9 @@ impl<'a, const D: usize> Weighing<'a, D> {
             check(monitor)?;
             let terms = |_, e| cost.terms(e);
             descent.normal.linearise_by(observations, &network, &descent.residuals, terms, |e| (precision, e));
-            let (before, least) = (now, TOLERANCE * now.abs());
-            now = descent.step_down(&mut network, now, WORTH * least, total, monitor)?.unwrap_or(now);
-            if before - now <= least {
+            let before = now;
+            now = descent.step_down(&mut network, now, f64::NEG_INFINITY, total, monitor)?.unwrap_or(now);
+            if before - now <= 1e-10 * before.abs() {
                 break;
             }
         }

@@ -265,8 +265,8 @@ mod tests {
     use crate::align::align;
     use crate::{CalibrateOptions, Layout, SimulateOptions, calibrate, simulate};
 
-    /// Where no measurement is spare in space, random networks alone may miss the truth, as of the second of these
-    /// seeds. Exact solutions have it in any case.
+    /// Where no measurement is spare in space, random networks alone miss the truth, of the first of these
+    /// seeds with another network that passes for the only one. Exact solutions have it in any case.
     #[test]
     fn the_truth_is_listed_where_no_measurement_is_spare() {
         for seed in [24, 54] {
@@ -287,7 +287,7 @@ mod tests {
                 (all.into_iter().any(near), found.unique)
             };
             assert_eq!(listed(6), (true, false), "seed {seed}");
-            assert!(seed != 54 || !listed(0).0);
+            assert_eq!(listed(0), (false, seed == 24), "seed {seed}");
         }
     }
 }
