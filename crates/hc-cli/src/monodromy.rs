@@ -4,7 +4,7 @@ use crate::checkpoint::{self, Recording};
 use crate::{family, input, watch};
 use cli::files::Files;
 use cli::{Failure, output};
-use hc::family::Stopped;
+use hc::family::{MonodromyGroup, Stopped};
 use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{FamilyError, Monodromy, MonodromyOptions, Run};
@@ -38,6 +38,10 @@ pub(crate) struct Arguments {
     /// is then no more than what was found.
     #[arg(long)]
     no_trace: bool,
+    /// Loops along which all solutions are followed in the end: their permutations, and what these tell of the
+    /// monodromy group, are in the JSON.
+    #[arg(long, default_value_t = 0, value_name = "LOOPS")]
+    group: u16,
     /// Seed of the loops.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -74,7 +78,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let options = MonodromyOptions::new()
         .seed(arguments.seed)
         .trace_test(!arguments.no_trace)
-        .only_component(arguments.only_component);
+        .only_component(arguments.only_component)
+        .group(arguments.group.into());
     let monitor = watch::interruptible()?;
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
     let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
@@ -94,6 +99,9 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let name = if family.name().is_empty() { input::name(path) } else { family.name().to_owned() };
     eprintln!("{name}: {}", summary(&found, file.trace_test));
     eprint!("{}", family::besides(&found.multiple));
+    if let Some(group) = &found.group {
+        eprintln!("{}", group_in_words(group));
+    }
     if found.stopped == Stopped::Cancelled {
         return Err(arguments.checkpoint.interrupted());
     }
@@ -124,6 +132,22 @@ fn summary(found: &Monodromy, deviation: Option<f64>) -> String {
             "roots" => "excluded by the number of roots",
             others => others,
         }
+    )
+}
+
+/// What is known of the monodromy group, in a line.
+fn group_in_words(group: &MonodromyGroup) -> String {
+    let has_blocks = group.blocks.iter().flatten().any(|systems| !systems.is_empty());
+    let kind = match (group.symmetric, has_blocks) {
+        (true, _) => "all permutations of the solutions",
+        (false, true) => "at least what these generate, which permutes blocks",
+        (false, false) => "at least what these generate",
+    };
+    format!(
+        "monodromy group, from {} of {}: {} other than the identity; {kind}",
+        group.whole,
+        counted(group.loops, "loop"),
+        counted(group.generators.len(), "permutation")
     )
 }
 

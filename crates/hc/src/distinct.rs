@@ -69,12 +69,17 @@ impl<'a> Known<'a> {
 
     /// Whether one of them has at most this [`relative_distance`] from a point.
     pub(crate) fn has(&self, x: &[Complex64], tolerance: f64) -> bool {
+        self.place(x, tolerance).is_some()
+    }
+
+    /// The number of one of them that has at most this [`relative_distance`] from a point.
+    pub(crate) fn place(&self, x: &[Complex64], tolerance: f64) -> Option<usize> {
         let own = Keyed::new(x, 0);
         // As in `Coincidences::find`; a point that coincides is nearly of this size.
         let reach = 4.0 * tolerance * own.size;
         let first = self.keyed.partition_point(|known| known.key < own.key - reach);
         let mut near = self.keyed[first..].iter().take_while(|known| known.key <= own.key + reach);
-        near.any(|known| relative_distance(self.points[known.index], x) <= tolerance)
+        near.find(|known| relative_distance(self.points[known.index], x) <= tolerance).map(|known| known.index)
     }
 }
 

@@ -40,6 +40,8 @@ pub(crate) enum Stream {
     Detour(u64),
     /// Parameters at which it is seen whether a solution is one for all.
     Elsewhere,
+    /// Products of permutations.
+    Products,
 }
 
 impl Stream {
@@ -57,6 +59,7 @@ impl Stream {
             Stream::Detour(k) => between(9, k),
             Stream::Rounding => 4,
             Stream::Elsewhere => 14,
+            Stream::Products => 15,
             Stream::Perturbation => 6,
             Stream::Combinations => 11,
             Stream::Beside => 13,
@@ -140,6 +143,7 @@ mod tests {
             Stream::Rounding,
             Stream::Trace,
             Stream::Elsewhere,
+            Stream::Products,
         ];
         let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {

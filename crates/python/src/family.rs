@@ -83,6 +83,7 @@ impl Family {
         patience: Option<usize>,
         trace: bool,
         only_component: bool,
+        group: usize,
         first: Option<PyRef<'py, Fibre>>,
         how: How,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -92,7 +93,7 @@ impl Family {
             let mut options = MonodromyOptions::new().seed(seed);
             options.roots = roots;
             options.patience = patience.unwrap_or(options.patience);
-            (options.trace_test, options.only_component) = (trace, only_component);
+            (options.trace_test, options.only_component, options.group) = (trace, only_component, group);
             let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
                 let first = match &first {
                     Some(first) => hc::Fibre::clone(first),

@@ -413,6 +413,17 @@ def test_families_with_several_orbits():
         family.monodromy(first=([4.0], [3.0]))
 
 
+def test_the_monodromy_group_of_a_family():
+    # Roots and their negatives: the symmetries of a square, with its diagonals as blocks.
+    square = hc.Family(["x^4 + a*x^2 + b"], "x", "a b").monodromy(group=12).monodromy_group
+    assert square["orbits"] == [[0, 1, 2, 3]] and not square["symmetric"]
+    assert [sorted(map(len, system)) for system in square["blocks"][0]] == [[2, 2]]
+    assert all(sorted(each) == [0, 1, 2, 3] for each in square["generators"])
+    found = hc.Family(["x^5 + a*x + b"], "x", "a b").monodromy(group=12)
+    assert found.monodromy_group["symmetric"] and found.monodromy_group["blocks"] == [[]]
+    assert hc.Family(["x - a"], "x", "a").monodromy().monodromy_group is None
+
+
 def test_families_with_more_equations_than_unknowns():
     # Three conics with the points (r, b / r), r^2 = a, in common.
     family = hc.Family(["x^2 - a", "x*y - b", "a*y^2 - b^2"], "x y", "a b")

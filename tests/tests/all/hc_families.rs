@@ -419,3 +419,28 @@ fn families_with_more_equations_than_unknowns_are_solved() {
     let (status, _, error) = ran(&["monodromy", text(&path("special.txt")), "--output", &start]);
     assert!(status == Some(1) && error.contains("no solution for generic parameters"), "{error}");
 }
+
+/// Roots and their negatives have the symmetries of a square, with its diagonals as blocks; those of a quintic with two free
+/// coefficients have all permutations.
+#[test]
+fn permutations_of_solutions_are_told_on_request() {
+    let directory = tempfile::tempdir().expect("directory");
+    let path = |name: &str| text(&directory.path().join(name)).to_owned();
+    let group = |equation: &str, more: &[&str]| {
+        let (family, start) = (path("family.txt"), path("start.json"));
+        std::fs::write(&family, format!("parameters: a b\n{equation}\n")).expect("written");
+        let output = run("hc", &[&["monodromy", &family, "--output", &start], more].concat());
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{error}");
+        let found: Value = serde_json::from_str(&std::fs::read_to_string(&start).expect("written")).expect("JSON");
+        (found["monodromy_group"].clone(), error)
+    };
+    let (square, error) = group("x^4 + a*x^2 + b", &["--group", "12"]);
+    assert!(error.contains("from 12 of 12 loops") && error.contains("which permutes blocks"), "{error}");
+    assert_eq!((&square["orbits"], &square["symmetric"]), (&json!([[0, 1, 2, 3]]), &json!(false)));
+    assert_eq!((square["blocks"][0].as_array().map(Vec::len), &square["loops"]), (Some(1), &json!(12)), "{square}");
+    let (quintic, error) = group("x^5 + a*x + b", &["--group", "12"]);
+    assert!(error.contains("all permutations of the solutions"), "{error}");
+    assert_eq!((&quintic["blocks"], &quintic["symmetric"]), (&json!([[]]), &json!(true)));
+    assert_eq!(group("x^5 + a*x + b", &[]).0, Value::Null);
+}

@@ -2,7 +2,8 @@
 
 use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
-use super::fibre::Fibre;
+use super::fibre::{Fibre, FibreOptions};
+use super::group::monodromy_group;
 use super::member::{Member, most_paths};
 use super::monodromy::LoopSearch;
 use super::overdetermined::Verdict;
@@ -114,6 +115,11 @@ impl Family {
             found.stopped = Stopped::Cancelled;
         }
         judge(&mut found, member, &options);
+        if options.group > 0 && found.stopped != Stopped::Cancelled {
+            let (paths, alone) = (FibreOptions::default(), Pieces::alone(monitor));
+            let group = monodromy_group(&searched, &found.fibre, options.group, &paths, options.seed, alone);
+            found.group = Some(group).filter(|_| !monitor.is_cancelled());
+        }
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }

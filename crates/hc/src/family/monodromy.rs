@@ -124,7 +124,7 @@ impl<E: Evaluate> LoopSearch<'_, E> {
         };
         let orbits = filling.joined.sizes();
         let fibre = Fibre { is_partial: !stopped.is_complete(), ..filling.fibre };
-        Monodromy { fibre, stopped, orbits, multiple: Vec::new(), loops, paths, trace: None }
+        Monodromy { fibre, stopped, orbits, multiple: Vec::new(), loops, paths, trace: None, group: None }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The search for all solutions of a family: its settings, its result, and what is known of it.
 
 use super::fibre::{Fibre, FibreOptions};
+use super::group::MonodromyGroup;
 use crate::setters::setters;
 use crate::tolerances::families;
 use num_complex::Complex64;
@@ -35,6 +36,10 @@ pub struct MonodromyOptions {
     /// the first are sought by other first pairs, and by a start system for the same parameters if
     /// that has no more paths than the loops (or 64), and 10,000 at most.
     pub only_component: bool,
+    /// Loops along which all solutions are followed in the end, to tell the [monodromy group](Monodromy::group); each
+    /// takes three paths a solution. Default 0: it is not asked for.
+    #[serde(skip)]
+    pub group: usize,
 }
 
 impl MonodromyOptions {
@@ -52,6 +57,7 @@ setters!(MonodromyOptions {
     fibre: FibreOptions,
     trace_test: bool,
     only_component: bool,
+    group: usize,
 });
 
 impl Default for MonodromyOptions {
@@ -68,6 +74,7 @@ impl Default for MonodromyOptions {
             fibre,
             trace_test,
             only_component,
+            group: 0,
         }
     }
 }
@@ -93,6 +100,8 @@ pub struct Monodromy {
     pub paths: usize,
     /// What the trace test found, if it was requested and completed.
     pub trace: Option<TraceTest>,
+    /// What loops tell of the monodromy group of the fibre, if that was asked for and the search was not cancelled.
+    pub group: Option<MonodromyGroup>,
 }
 
 /// A solution that is multiple for all parameters, at those of the fibre.

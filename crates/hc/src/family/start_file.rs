@@ -1,6 +1,7 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
 use super::fibre::Fibre;
+use super::group::MonodromyGroup;
 use super::search::{Monodromy, Multiple, Stopped};
 use num_complex::Complex64;
 use poly::counted;
@@ -29,6 +30,9 @@ pub struct StartFile {
     /// Solutions that are multiple for all parameters, which are not among the others.
     #[serde(default)]
     pub multiple: Vec<Multiple>,
+    /// What loops tell of the monodromy group, if it was asked for.
+    #[serde(default)]
+    pub monodromy_group: Option<MonodromyGroup>,
 }
 
 /// Why a start file cannot be used.
@@ -70,6 +74,7 @@ impl StartFile {
             orbits: Vec::new(),
             others: String::new(),
             multiple: Vec::new(),
+            monodromy_group: None,
         }
     }
 
@@ -94,9 +99,11 @@ impl StartFile {
             format!("{{\"value\": {}, \"multiplicity\": {}}}", list(&value), m.multiplicity)
         };
         let multiple: Vec<String> = self.multiple.iter().map(multiple).collect();
+        // Numbers alone, which are always written.
+        let group = serde_json::to_string(&self.monodromy_group).unwrap_or_else(|_| "null".to_owned());
         format!(
             "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"trace_test\": {trace},\n  \"stopped\": {:?},\n  \
-             \"orbits\": {:?},\n  \"others\": {:?},\n  \"multiple\": [{}]\n}}\n",
+             \"orbits\": {:?},\n  \"others\": {:?},\n  \"multiple\": [{}],\n  \"monodromy_group\": {group}\n}}\n",
             list(&self.parameters),
             solutions.join(",\n"),
             self.stopped,
@@ -142,6 +149,7 @@ impl Monodromy {
             orbits: self.orbits.clone(),
             others: self.stopped.others().to_owned(),
             multiple: self.multiple.clone(),
+            monodromy_group: self.group.clone(),
             ..StartFile::new(&self.fibre, trace_test, &self.stopped.to_string())
         }
     }
@@ -150,7 +158,7 @@ impl Monodromy {
 #[cfg(test)]
 mod tests {
     use super::{StartFile, StartFileError};
-    use crate::family::{Fibre, Multiple};
+    use crate::family::{Fibre, MonodromyGroup, Multiple};
     use crate::random::{Random, Stream};
     use proptest::prelude::proptest;
 
@@ -163,6 +171,7 @@ mod tests {
             orbits: vec![5, 2],
             others: "roots".to_owned(),
             multiple: vec![multiple],
+            monodromy_group: Some(MonodromyGroup::default()),
             ..StartFile::new(&fibre, Some(1.5e-13), "roots reached")
         };
         let again = StartFile::from_json(&file.to_json()).unwrap();

@@ -173,6 +173,7 @@ class Fibre:
     orbits: list[int]
     others: str
     multiple: list[tuple[NDArray[np.complex128], int]]
+    monodromy_group: dict[str, Any] | None
     def __init__(self, text: str) -> None: ...
     @property
     def complete(self) -> bool: ...
@@ -226,6 +227,7 @@ class Family:
         patience: int | None = None,
         trace: bool = True,
         only_component: bool = False,
+        group: int = 0,
         threads: int | None = None,
         progress: _Progress = True,
     ) -> Fibre: ...

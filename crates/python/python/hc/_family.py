@@ -99,6 +99,11 @@ class Fibre:
         How other orbits are excluded: `roots`, `start system`, `not excluded` or `not sought`.
     multiple : list of (ndarray of complex, shape (n,), int)
         Solutions that are multiple for all parameters, with their multiplicities; they are not among the points.
+    monodromy_group : dict or None
+        What loops tell of the monodromy group, if `monodromy` was asked for it by `group`: the numbers of `loops` and of
+        those that are `whole`, `generators` (solution `k`, from 0, goes to `generators[j][k]`), `orbits`, `blocks` (for each
+        orbit its minimal systems of blocks, `None` where these were not sought, among more than 2,000 solutions) and `symmetric` (whether these generate all permutations). Further loops could
+        add to it.
     """
 
     def __init__(self, text):
@@ -121,6 +126,7 @@ class Fibre:
         self.multiple = [
             (np.array(each["value"], dtype=float).view(complex)[..., 0], each["multiplicity"]) for each in data.get("multiple", [])
         ]
+        self.monodromy_group = data.get("monodromy_group")
 
     @property
     def complete(self):
@@ -288,7 +294,17 @@ class Family:
         return family
 
     def monodromy(
-        self, *, seed=0, first=None, roots=None, patience=None, trace=True, only_component=False, threads=None, progress=True
+        self,
+        *,
+        seed=0,
+        first=None,
+        roots=None,
+        patience=None,
+        trace=True,
+        only_component=False,
+        group=0,
+        threads=None,
+        progress=True,
     ):
         """Find all solutions for one generic parameter point, by loops in the parameters from a single one.
 
@@ -308,6 +324,8 @@ class Family:
             Whether the trace test shows that orbits are whole, where the number of solutions is not known.
         only_component : bool
             Whether only the solutions are sought that loops join to the first.
+        group : int
+            Loops along which all solutions are followed in the end, to tell the monodromy group.
         threads, progress
             As in `hc.solve`.
 
@@ -332,6 +350,7 @@ class Family:
             integer("patience", patience),
             bool(trace),
             bool(only_component),
+            integer("group", group) or 0,
             native,
             threads=threads,
             progress=progress,

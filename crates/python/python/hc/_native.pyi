@@ -86,6 +86,14 @@ class Family:
     def describe(self) -> tuple[str, list[str], list[str], int | None]: ...
     def fibre(self, json: str) -> Fibre: ...
     def monodromy(
-        self, seed: int, roots: int | None, patience: int | None, trace: bool, only_component: bool, first: Fibre | None, how: _How
+        self,
+        seed: int,
+        roots: int | None,
+        patience: int | None,
+        trace: bool,
+        only_component: bool,
+        group: int,
+        first: Fibre | None,
+        how: _How,
     ) -> _Found: ...
     def track(self, fibre: Fibre, targets: NDArray[np.complex128], certify: bool, effort: tuple[float, float | None], how: _How) -> _Found: ...
