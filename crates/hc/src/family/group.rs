@@ -110,7 +110,7 @@ mod tests {
         group
     }
 
-    /// All coefficients of `x^d + ...` free: every permutation of the roots.
+    /// A polynomial whose two lowest coefficients are free: every permutation of the roots, as of `x^d + b x + c`.
     #[test]
     fn of_a_generic_polynomial_is_symmetric() {
         for (d, p) in [(3, vec!["a", "b", "c"]), (5, vec!["a", "b", "c"]), (9, vec!["a", "b", "c"])] {
