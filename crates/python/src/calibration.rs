@@ -66,9 +66,10 @@ impl Settings {
         };
         options.emissions = Emissions::of_ranges(self.ranges);
         options.errors = match self.errors.as_str() {
+            "auto" => Errors::Auto,
             "symmetric" => Errors::Symmetric,
             "one-sided" => Errors::OneSided,
-            other => return Err(Failure::Input(format!("errors must be symmetric or one-sided, not {other:?}"))),
+            other => return Err(Failure::Input(format!("errors must be auto, symmetric or one-sided, not {other:?}"))),
         };
         Ok(options)
     }

@@ -171,6 +171,7 @@ impl Task<'_> {
         };
         options.emissions = Emissions::of_ranges(arguments.ranges);
         options.errors = match arguments.errors {
+            Side::Auto => Errors::Auto,
             Side::Symmetric => Errors::Symmetric,
             Side::OneSided => Errors::OneSided,
         };

@@ -182,7 +182,7 @@ def calibrate(
     progress: _Progress = True,
     receiver_delays: Literal["none", "auto", "all"] = "none",
     ranges: bool = False,
-    errors: Literal["symmetric", "one-sided"] = "symmetric",
+    errors: Literal["auto", "symmetric", "one-sided"] = "auto",
     distances: Iterable[tuple[str | int, str | int, float]] | None = None,
     estimate_speed: bool = False,
     max_starts: int | None = None,

@@ -137,7 +137,7 @@ def calibrate(
     progress=True,
     receiver_delays="none",
     ranges=False,
-    errors="symmetric",
+    errors="auto",
     distances=None,
     estimate_speed=False,
     max_starts=None,
@@ -179,9 +179,10 @@ def calibrate(
     ranges : bool
         Whether the measurements are distances, such as two-way ranges or arrival times less known send times: transmitters have no
         offsets then. Not together with `receiver_delays` "all".
-    errors : {"symmetric", "one-sided"}
+    errors : {"auto", "symmetric", "one-sided"}
         How measurements are wrong that are wrong by more than noise: too long or too short alike, or nearly all too long, as where
-        sound or radio comes by a detour. Not together with `receiver_delays`.
+        sound or radio comes by a detour, which does not go together with `receiver_delays`. With "auto" the latter is tried where no
+        network fits, and said.
     distances : sequence of (receiver, receiver, metres), optional
         Known distances between receivers, by name or by index, for `estimate_speed`.
     estimate_speed : bool

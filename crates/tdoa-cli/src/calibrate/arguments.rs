@@ -53,8 +53,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(super) ranges: bool,
     /// How measurements are wrong that are wrong by more than noise: too long or too short alike
-    /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided).
-    #[arg(long, value_enum, default_value = "symmetric")]
+    /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided). With auto the
+    /// latter is tried where no network fits, and said.
+    #[arg(long, value_enum, default_value = "auto")]
     pub(super) errors: Side,
     /// Known distances between some receivers (receiver,receiver,distance, metres), for
     /// --estimate-speed.
@@ -126,6 +127,7 @@ pub(super) enum Delays {
 /// The side to which measurements are wrong.
 #[derive(Clone, Copy, clap::ValueEnum)]
 pub(super) enum Side {
+    Auto,
     Symmetric,
     OneSided,
 }

@@ -1,5 +1,6 @@
 //! The way into a calibration, compiled once for the plane and once for space.
 
+use crate::calibrate::judge::errors_chosen::with_errors_chosen;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::Hypotheses;
@@ -53,7 +54,8 @@ macro_rules! calibrates {
                 sources: &[&dyn Hypotheses<$dimension>],
                 monitor: &Monitor,
             ) -> Result<Calibration<$dimension>, CalibrateError<$dimension>> {
-                let found = steps::calibrate_with(measured, options, sources, monitor)?;
+                let calibrate = |options: &CalibrateOptions<$dimension>| steps::calibrate_with(measured, options, sources, monitor);
+                let found = with_errors_chosen(options, monitor, calibrate)?;
                 // Nobody asked.
                 Ok(Calibration { dimension_test: None, ..found })
             }

@@ -7,6 +7,7 @@ use crate::observations::Node;
 use crate::refine::Cancelled;
 use hc::Monitor;
 use hc::poly::counted;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// How to treat errors that all measurements of one receiver have in common.
@@ -27,11 +28,15 @@ pub enum ReceiverDelays {
 }
 
 /// How measurements are wrong if they are wrong by more than noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Errors {
-    /// Too long as often as too short.
+    /// Too long as often as too short; where no network fits so, and one-sided errors leave a tenth of the deviation or less,
+    /// one-sided, which a warning says.
     #[default]
+    Auto,
+    /// Too long as often as too short.
     Symmetric,
     /// Nearly all too long, for instance because sound or radio takes a detour. Cannot be combined
     /// with [`CalibrateOptions::receiver_delays`].
@@ -117,7 +122,7 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
     pub emissions: Emissions,
     /// How measurements are wrong if they are wrong by more than noise. Default
-    /// [`Errors::Symmetric`].
+    /// [`Errors::Auto`].
     pub errors: Errors,
     /// Known distances between receivers, for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
@@ -176,7 +181,7 @@ impl<const D: usize> CalibrateOptions<D> {
             positions: Vec::new(),
             receiver_delays: ReceiverDelays::None,
             emissions: Emissions::Unknown,
-            errors: Errors::Symmetric,
+            errors: Errors::Auto,
             distances: Vec::new(),
             estimate_speed: false,
         }

@@ -85,7 +85,7 @@ fn steps<const D: usize>(
     if state.anchors.is_some() {
         // They were found without the known positions.
         state.neighbours.clear();
-    } else if options.errors == Errors::Symmetric && !state.has_delays_of_all() {
+    } else if options.errors != Errors::OneSided && !state.has_delays_of_all() {
         state.compare_with_one_sided()?;
     }
     let judged = state.judge(input)?;

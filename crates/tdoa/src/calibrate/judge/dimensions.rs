@@ -3,6 +3,7 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
+use crate::calibrate::judge::errors_chosen::{Fit, with_errors_chosen};
 use crate::calibrate::judge::excluded::plane_is_excluded;
 use crate::calibrate::judge::explained::explained_by_errors;
 use crate::calibrate::judge::known_heights::{KnownHeights, in_plane};
@@ -39,6 +40,36 @@ pub enum Calibrated {
     Plane(Calibration),
     /// In space.
     Space(Calibration<3>),
+}
+
+impl Calibrated {
+    fn as_fit(&self) -> &dyn Fit {
+        match self {
+            Calibrated::Plane(found) => found,
+            Calibrated::Space(found) => found,
+        }
+    }
+}
+
+impl Fit for Calibrated {
+    fn fits(&self) -> bool {
+        self.as_fit().fits()
+    }
+
+    fn is_trusted(&self) -> bool {
+        self.as_fit().is_trusted()
+    }
+
+    fn estimated_deviation(&self) -> Option<f64> {
+        self.as_fit().estimated_deviation()
+    }
+
+    fn warn(&mut self, warning: String) {
+        match self {
+            Calibrated::Plane(found) => found.warn(warning),
+            Calibrated::Space(found) => found.warn(warning),
+        }
+    }
 }
 
 /// Why there is none.
@@ -80,6 +111,15 @@ pub fn calibrate_either(
     options: &CalibrateOptions<3>,
     monitor: &Monitor,
 ) -> Result<Calibrated, CalibratedError> {
+    with_errors_chosen(options, monitor, |options| with_dimension_chosen(measured, options, monitor))
+}
+
+/// [`calibrate_either`] with errors as these options have them.
+fn with_dimension_chosen(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<3>,
+    monitor: &Monitor,
+) -> Result<Calibrated, CalibratedError> {
     let heights = KnownHeights::of(options);
     if heights == KnownHeights::Different {
         // Nobody asked.
@@ -115,7 +155,7 @@ pub fn calibrate_either(
     Ok(Calibrated::Plane(found))
 }
 
-/// [`calibrate_either`] without known positions.
+/// [`with_dimension_chosen`] without known positions.
 fn choose(
     measured: &Pseudoranges,
     options: &CalibrateOptions<3>,

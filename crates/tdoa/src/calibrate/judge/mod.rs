@@ -2,6 +2,7 @@
 
 pub(crate) mod dimension_test;
 pub(crate) mod dimensions;
+pub(crate) mod errors_chosen;
 mod excluded;
 mod explained;
 pub(crate) mod far_transmitters;

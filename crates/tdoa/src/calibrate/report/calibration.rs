@@ -7,6 +7,7 @@ use crate::calibrate::input::speed::SpeedEstimate;
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::far_transmitters::FarTransmitter;
 use crate::calibrate::judge::mirror_images::MirrorImage;
+use crate::calibrate::options::Errors;
 use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::candidates::ChosenCandidate;
@@ -149,6 +150,9 @@ pub struct Calibration<const D: usize = 2> {
     /// What was known of the times at which transmitters sent. Where they were known, offsets are zero.
     #[serde(default)]
     pub emissions: Emissions,
+    /// How wrong measurements were expected to be wrong: [`Errors::Symmetric`] or [`Errors::OneSided`].
+    #[serde(default = "symmetric")]
+    pub errors: Errors,
     /// Seed of the search.
     pub seed: u64,
     /// Number of starts of the search, or of small networks if these were laid together.
@@ -182,6 +186,11 @@ fn is_zero(count: &usize) -> bool {
 /// Results that were written before they said so.
 fn agree() -> bool {
     true
+}
+
+/// Results that were written before they said so.
+fn symmetric() -> Errors {
+    Errors::Symmetric
 }
 
 /// Results that were written before they could be in space.

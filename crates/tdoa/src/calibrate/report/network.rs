@@ -6,7 +6,7 @@ use crate::calibrate::judge::far_transmitters::{Far, FarTransmitter};
 use crate::calibrate::judge::judgement::{Judged, Other};
 use crate::calibrate::judge::mirror_images::{MirrorImage, Mirrored};
 use crate::calibrate::judge::neighbours::Reason;
-use crate::calibrate::options::CalibrateError;
+use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::receivers::take_out::without_errors;
 use crate::calibrate::report::calibration::{Alternative, Calibration};
 use crate::calibrate::report::residuals::{Residual, Residuals};
@@ -90,6 +90,7 @@ impl<const D: usize> State<'_, D> {
             systematic: None,
             warnings: self.warnings(input, judged),
             emissions: self.options.emissions,
+            errors: if judged.one_sided.is_some() { Errors::OneSided } else { Errors::Symmetric },
             seed: self.options.seed,
             starts: self.starts,
             laid_together: self.weak.is_some(),

@@ -117,7 +117,13 @@ impl<const D: usize> State<'_, D> {
             return;
         }
         let agreeing = judged.agreeing;
-        if let Some(weak) = &self.weak {
+        if judged.scattered {
+            warnings.push(format!(
+                "only {agreeing} of {} starts of the search ended in this network, fewer than there are others that fit about as well: the \
+                 measurements do not tell these apart; move some nodes out of the line, circle or plane that they may lie in, or measure more",
+                self.starts
+            ));
+        } else if let Some(weak) = &self.weak {
             let names: Vec<String> = weak.iter().map(|&i| self.measured.receiver_names()[i].clone()).collect();
             warnings.push(format!(
                 "{agreeing} of {} of neighbours {} the whole, but none that overlaps with others places {}; measure \

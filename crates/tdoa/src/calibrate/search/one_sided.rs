@@ -73,7 +73,7 @@ pub(crate) fn noise<const D: usize>(
     options: &CalibrateOptions<D>,
 ) -> f64 {
     match options.errors {
-        Errors::Symmetric => inlier_deviation(observations, network, first, options.inlier_threshold),
+        Errors::Auto | Errors::Symmetric => inlier_deviation(observations, network, first, options.inlier_threshold),
         Errors::OneSided => mixture_of(observations, network, first).deviation,
     }
 }
@@ -96,13 +96,17 @@ pub(crate) fn finish_one_sided<const D: usize>(
     let wide = wide.fold(f64::INFINITY, f64::min).max(first).max(least);
     for refined in networks {
         let fits = fitting.narrowed((refined.network.clone(), Mixture::first(wide)))?;
+        let before = ranked.len();
         for (k, (network, mixture)) in fits.into_iter().enumerate() {
             // The first is there where no other is.
             if network.is_finite() && (k == 0 || fitting.determined(&mixture)) {
                 let objective = fitting.objective(&network, &mixture)?;
-                ranked.push(RefinedNetwork { network, scale: mixture.deviation, objective, starts: refined.starts });
+                ranked.push(RefinedNetwork { network, scale: mixture.deviation, objective, starts: 0 });
             }
         }
+        // Its starts ended in the likelier fit.
+        let likelier = ranked[before..].iter_mut().min_by(|a, b| a.objective.total_cmp(&b.objective));
+        likelier.into_iter().for_each(|fit| fit.starts = refined.starts);
     }
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     // They were apart only for as long as late measurements counted as noise.
@@ -310,7 +314,8 @@ mod tests {
             let [free, given] = [None, Some(SIGMA)].map(|sigma| error(&calibrated(&simulation, sigma), &simulation).0);
             assert!(free < 5.0 && given < 5.0, "seed {seed}: {free} {given}");
             // Without the deviation, the symmetric loss takes late measurements for noise.
-            let symmetric = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+            let options = CalibrateOptions { errors: Errors::Symmetric, ..Default::default() };
+            let symmetric = calibrate(&simulation.pseudoranges, &options).unwrap();
             let other = error(&symmetric, &simulation).0;
             assert!(free < 0.5 * other, "seed {seed}: {free} {other}");
         }
