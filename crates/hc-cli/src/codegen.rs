@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The easiest fibre of so many random members and the given one.
 fn easiest(family: &Family, start: &StartFile, members: u16, arguments: &Arguments) -> Result<StartFile, Failure> {
     let refused = |error: CodegenError| Failure::in_file(&arguments.start, error);
-    let fibre = start.fibre().map_err(|e| Failure::in_file(&arguments.start, e))?;
+    let fibre = family.stored(start).map_err(|e| Failure::in_file(&arguments.start, e))?;
     codegen::verify(family, &fibre).map_err(refused)?;
     let parameters = fibre.parameters.len();
     let mut options = ChoiceOptions::default();

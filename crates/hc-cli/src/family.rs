@@ -28,9 +28,8 @@ pub(crate) fn failure(file: &Path, error: FamilyError) -> Failure {
 /// Reads a stored fibre, or a first pair, of a family, and the solutions that are multiple for all parameters.
 pub(crate) fn fibre(family: &Family, path: &Path) -> Result<(Fibre, Vec<Multiple>), Failure> {
     let file = StartFile::from_json(&input::text(path)?).map_err(|e| Failure::in_file(path, e))?;
-    let fibre = file.fibre().map_err(|e| Failure::in_file(path, e))?;
-    family.check(&fibre).map_err(|e| Failure::in_file(path, e))?;
-    Ok((family.folded(fibre), file.multiple))
+    let fibre = family.stored(&file).map_err(|e| Failure::in_file(path, e))?;
+    Ok((fibre, file.multiple))
 }
 
 /// What a summary says of solutions that are multiple for all parameters; empty if there are none.

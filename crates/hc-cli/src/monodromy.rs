@@ -4,7 +4,7 @@ use crate::checkpoint::{self, Recording};
 use crate::{family, input, watch};
 use cli::files::Files;
 use cli::{Failure, output};
-use hc::family::{MonodromyGroup, Stopped};
+use hc::family::{MonodromyGroup, StartFile, Stopped};
 use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{FamilyError, Monodromy, MonodromyOptions, Run};
@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// monodromy group, are in the JSON.
     #[arg(long, default_value_t = 0, value_name = "LOOPS")]
     group: u16,
+    /// Lists one solution of each orbit under the family's `symmetry`, and says for how many each stands.
+    #[arg(long, conflicts_with = "group")]
+    up_to_symmetry: bool,
     /// Seed of the loops.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -68,6 +71,9 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     input::check(&files.writes("--output", Some(output)), ranks)?;
     let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
+    if arguments.up_to_symmetry && family.symmetry().is_empty() {
+        return Err(family::failure(path, FamilyError::NoSymmetry));
+    }
     let start = match &arguments.seed_pair {
         Some(path) => family::fibre(&family, path)?.0,
         None => family.find_pair(arguments.seed).map_err(|error| match error {
@@ -95,9 +101,14 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     });
     let Some(found) = found? else { return Ok(()) };
     let file = found.start_file();
+    let file = if arguments.up_to_symmetry {
+        family.up_to_symmetry(&file).map_err(|error| family::failure(path, error))?
+    } else {
+        file
+    };
     output::text(output, &file.to_json())?;
     let name = if family.name().is_empty() { input::name(path) } else { family.name().to_owned() };
-    eprintln!("{name}: {}", summary(&found, file.trace_test));
+    eprintln!("{name}: {}", summary(&found, &file));
     eprint!("{}", family::besides(&found.multiple));
     if let Some(group) = &found.group {
         eprintln!("{}", group_in_words(group));
@@ -109,18 +120,22 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
 }
 
 /// What was found, in a line.
-fn summary(found: &Monodromy, deviation: Option<f64>) -> String {
+fn summary(found: &Monodromy, file: &StartFile) -> String {
     let (count, orbits) = (found.fibre.len(), found.orbits.len());
     let sizes: Vec<String> = found.orbits.iter().take(LISTED).map(usize::to_string).collect();
     let more = if orbits > LISTED { ", ..." } else { "" };
     let of_size = if orbits == 1 { "size" } else { "sizes" };
-    let trace = match (found.trace, deviation) {
+    let listed = match file.represents.len() {
+        0 => String::new(),
+        listed => format!(" ({listed} up to symmetry)"),
+    };
+    let trace = match (found.trace, file.trace_test) {
         (_, Some(deviation)) => format!(", trace test {deviation:.1e}"),
         (Some(_), None) => ", trace test without a result (paths were lost, or led to other solutions)".to_owned(),
         (None, None) => String::new(),
     };
     format!(
-        "{} after {} and {}; {} of {of_size} {}{more}; stopped: {}{trace}; other orbits: {}",
+        "{}{listed} after {} and {}; {} of {of_size} {}{more}; stopped: {}{trace}; other orbits: {}",
         counted(count, "solution"),
         counted(found.loops, "loop"),
         counted(found.paths, "path"),

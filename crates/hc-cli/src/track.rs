@@ -39,6 +39,10 @@ pub(crate) struct Arguments {
     /// as they are in double precision. Exit status 1 if some regular one is not certified.
     #[arg(long)]
     certify: bool,
+    /// Lists one solution of each orbit under the family's `symmetry`, a real one if there is one, and says for how many
+    /// each stands.
+    #[arg(long)]
+    up_to_symmetry: bool,
     /// Paths that are tracked again for a target, at most, in multiples of the paths of its first pass. What is lost
     /// then is said, with exit status 1. With 2 and more detours are tried first.
     #[arg(long, default_value_t = TargetLimits::default().again, value_name = "MULTIPLE", allow_negative_numbers = true)]
@@ -79,6 +83,8 @@ struct Target {
 struct Tracked<'a> {
     #[serde(flatten)]
     found: &'a Solutions,
+    /// For how many solutions each stands, where one of each orbit is listed; empty if all are.
+    represents: &'a [usize],
     /// The multiplicities of solutions that are multiple for all parameters, where the start file names such: no path
     /// leads to them.
     untracked: &'a [usize],
@@ -112,7 +118,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
     let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
-        run.track(&family, &fibre, &targets).options(&options).limits(&limits).transform(|_, found| {
+        let tracking = run.track(&family, &fibre, &targets).options(&options).limits(&limits);
+        tracking.up_to_symmetry(arguments.up_to_symmetry).transform(|_, found| {
             done.fetch_add(1, Ordering::Relaxed);
             (found, begun.elapsed().as_secs_f64())
         })
@@ -126,7 +133,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     }
     let seed = arguments.seed;
     let untracked: Vec<usize> = multiple.iter().map(|m| m.multiplicity).collect();
-    let found: Vec<Tracked<'_>> = solved.iter().map(|(found, _)| Tracked { found, untracked: &untracked }).collect();
+    let tracked = |found| Tracked { found, represents: &found.represents, untracked: &untracked };
+    let found: Vec<Tracked<'_>> = solved.iter().map(|(found, _)| tracked(found)).collect();
     let reports: Vec<Report<'_, Tracked<'_>>> = (found.iter().zip(&solved))
         .map(|(found, (_, seconds))| Report { variables: &found.found.variables, seed, seconds: *seconds, found })
         .collect();
@@ -181,11 +189,16 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
         return each.map(|(k, (found, seconds))| format!("target {}: {found}{seconds:.3} s\n", k + 1)).collect();
     }
     let sum = |count: &dyn Fn(&Solutions) -> usize| -> usize { solved.iter().map(|(found, _)| count(found)).sum() };
+    let (listed, real) = (sum(&|found| found.represents.len()), sum(&|found| found.n_real()));
+    let real = match listed {
+        0 => format!("{real} real"),
+        listed => format!("{listed} up to symmetry, {real} of these real"),
+    };
     let mut text = format!(
-        "{} targets: {}, {} real; {}: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
+        "{} targets: {}, {}; {}: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
         solved.len(),
-        counted(sum(&Solutions::len), "isolated solution"),
-        sum(&|found| found.n_real()),
+        counted(sum(&Solutions::count), "isolated solution"),
+        real,
         counted(sum(&|found| found.paths.tracked), "path"),
         sum(&|found| found.paths.finite),
         sum(&|found| found.paths.at_infinity),

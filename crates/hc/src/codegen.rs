@@ -4,9 +4,10 @@
 //! generated module depends only on this crate.
 
 use crate::distinct::{coincidences, relative_distance};
-use crate::family::{Family, FamilyError, Fibre, PackedFibreError, StartFile, StartFileError, pack_fibre};
+use crate::family::{Family, FamilyError, Fibre, PackedFibreError, StartFile, pack_fibre};
 use crate::refine::Refiner;
 use crate::tolerances::{families, same};
+use num_complex::Complex64;
 use poly::counted;
 use poly::program::{EmitError, EmitOptions, emit};
 use std::fmt::Write;
@@ -16,12 +17,9 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CodegenError {
-    /// The stored solutions belong to another family.
+    /// The start file cannot be used, or belongs to another family.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// The start file cannot be used.
-    #[error(transparent)]
-    Start(#[from] StartFileError),
     /// The solutions cannot be packed.
     #[error(transparent)]
     Packed(#[from] PackedFibreError),
@@ -104,13 +102,14 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     if equations > unknowns {
         return Err(CodegenError::Overdetermined { equations, unknowns });
     }
-    verify(family, &start.fibre()?)?;
+    let fibre = family.stored(start)?;
+    verify(family, &fibre)?;
     let mut options = EmitOptions::default();
     options.crate_path = "hc::poly".to_owned();
     options.source = one_line(source);
     let mut text = emit(family.program().program(), &options)?;
     // Writing to a string cannot fail.
-    let _ = append_fibre(&mut text, start, family.system().variables().len());
+    let _ = append_fibre(&mut text, start, &fibre);
     Ok(text)
 }
 
@@ -120,7 +119,7 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
 /// # Errors
 /// If the stored solutions fail a check.
 pub fn pack(family: &Family, start: &StartFile) -> Result<Vec<u8>, CodegenError> {
-    let fibre = start.fibre()?;
+    let fibre = family.stored(start)?;
     verify(family, &fibre)?;
     Ok(pack_fibre(family.program(), &fibre)?)
 }
@@ -160,19 +159,18 @@ pub fn verify(family: &Family, fibre: &Fibre) -> Result<(), CodegenError> {
 }
 
 /// The stored solutions as tables, and the function that makes a fibre of them.
-fn append_fibre(text: &mut String, start: &StartFile, unknowns: usize) -> std::fmt::Result {
+fn append_fibre(text: &mut String, start: &StartFile, fibre: &Fibre) -> std::fmt::Result {
+    let unknowns = fibre.dimension;
     let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
     writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
-    writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
-    append_rows(text, &start.parameters)?;
+    writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", fibre.parameters.len())?;
+    append_rows(text, &fibre.parameters)?;
     writeln!(text, "];")?;
     writeln!(text, "/// All solutions there, {unknowns} coordinates each, one after the other.")?;
     let stopped = if start.stopped.is_empty() { "not said".to_owned() } else { one_line(&start.stopped) };
     writeln!(text, "///\n/// Search ended: {stopped}; trace test: {trace}.")?;
-    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * unknowns)?;
-    for solution in &start.solutions {
-        append_rows(text, solution)?;
-    }
+    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", fibre.solutions.len())?;
+    append_rows(text, &fibre.solutions)?;
     writeln!(text, "];")?;
     writeln!(text, "/// All solutions for a generic parameter point.")?;
     writeln!(text, "pub fn fibre() -> hc::Fibre {{")?;
@@ -180,9 +178,9 @@ fn append_fibre(text: &mut String, start: &StartFile, unknowns: usize) -> std::f
     writeln!(text, "}}")
 }
 
-fn append_rows(text: &mut String, numbers: &[[f64; 2]]) -> std::fmt::Result {
-    for [re, im] in numbers {
-        writeln!(text, "    [{re:?}, {im:?}],")?;
+fn append_rows(text: &mut String, numbers: &[Complex64]) -> std::fmt::Result {
+    for z in numbers {
+        writeln!(text, "    [{:?}, {:?}],", z.re, z.im)?;
     }
     Ok(())
 }
@@ -195,7 +193,7 @@ fn one_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{CodegenError, generate};
-    use crate::family::{Family, Fibre, StartFile};
+    use crate::family::{Family, FamilyError, Fibre, StartFile};
 
     fn family() -> Family {
         let family = poly::Family::from_formulas(&["x"], &["a", "b"], &["x^2 - (a + b)*x + a*b"]).unwrap();
@@ -228,7 +226,7 @@ mod tests {
         assert_eq!(error([1.0, 2.0], &[1.0, 1.0]), CodegenError::Coincident { solutions: vec![1, 2] });
         assert_eq!(error([1.0, 5.0], &[1.0, 5.0]), CodegenError::Degenerate { index: 2 });
         assert!(matches!(error([1.0, 1.0], &[1.0, 1.0]), CodegenError::Singular { index: 1, .. }));
-        assert!(matches!(error([f64::NAN, 1.0], &[1.0, 1.0]), CodegenError::Start(_)));
+        assert!(matches!(error([f64::NAN, 1.0], &[1.0, 1.0]), CodegenError::Family(FamilyError::Start(_))));
         let mut ragged = start([1.0, 2.0], &[1.0, 2.0]);
         ragged.parameters.pop();
         assert!(matches!(generate(&family(), &ragged, "").unwrap_err(), CodegenError::Family(_)));

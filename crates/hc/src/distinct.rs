@@ -16,6 +16,13 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(ends::FLOOR * largest)).fold(0.0, f64::max)
 }
 
+/// Whether a point coincides with its conjugate: all imaginary parts are at most this share of the largest coordinate, or
+/// of one.
+pub(crate) fn is_real(point: &[Complex64], tolerance: f64) -> bool {
+    let size = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
+    point.iter().all(|z| z.im.abs() <= tolerance * size)
+}
+
 /// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates):
 /// points whose [`relative_distance`] is at most `tolerance`, and chains of such. Labels ascend
 /// within a group, groups by their first label.

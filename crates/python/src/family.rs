@@ -4,7 +4,7 @@ use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::work::{Done, How, run, whole};
 use hc::family::{StartFile, TargetLimits};
-use hc::{FamilyError, MonodromyOptions, Run, Solutions, SolveOptions};
+use hc::{FamilyError, MonodromyOptions, Run, Solution, Solutions, SolveOptions};
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
@@ -26,6 +26,7 @@ mod end {
     pub(super) const AT_INFINITY: i8 = 2;
     pub(super) const ON_COMPONENT: i8 = 3;
     pub(super) const FAILED: i8 = 4;
+    pub(super) const IMAGE: i8 = 5;
 }
 
 #[pymethods]
@@ -67,9 +68,7 @@ impl Family {
     fn fibre(&self, json: &str) -> PyResult<Fibre> {
         guarded(|| {
             let file = StartFile::from_json(json).map_err(Failure::input)?;
-            let fibre = file.fibre().map_err(Failure::input)?;
-            self.0.check(&fibre).map_err(Failure::input)?;
-            Ok(Fibre(Arc::new(self.0.folded(fibre))))
+            Ok(Fibre(Arc::new(self.0.stored(&file).map_err(Failure::input)?)))
         })
     }
 
@@ -84,11 +83,16 @@ impl Family {
         trace: bool,
         only_component: bool,
         group: usize,
+        up_to_symmetry: bool,
         first: Option<PyRef<'py, Fibre>>,
         how: How,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let family = self.0.clone();
+            let symmetric = family.clone();
+            if up_to_symmetry && family.symmetry().is_empty() {
+                return Err(Failure::input(FamilyError::NoSymmetry));
+            }
             let first = first.map(|first| first.0.clone());
             let mut options = MonodromyOptions::new().seed(seed);
             options.roots = roots;
@@ -106,7 +110,9 @@ impl Family {
                 error => Failure::input(error),
             })?;
             let result = PyDict::new(py);
-            result.set_item("json", found.start_file().to_json())?;
+            let file = found.start_file();
+            let file = if up_to_symmetry { symmetric.up_to_symmetry(&file).map_err(Failure::input)? } else { file };
+            result.set_item("json", file.to_json())?;
             result.set_item("loops", found.loops)?;
             result.set_item("paths", found.paths)?;
             whole(py, result.into_any(), stopped)
@@ -121,6 +127,7 @@ impl Family {
         fibre: PyRef<'py, Fibre>,
         targets: PyReadonlyArrayDyn<'py, Complex64>,
         certify: bool,
+        up_to_symmetry: bool,
         effort: (f64, Option<f64>),
         how: How,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -133,7 +140,8 @@ impl Family {
                 let mut limits = TargetLimits::default();
                 (limits.again, limits.seconds) = effort;
                 let tracking = Run::new().watched(monitor).track(&family, &fibre, &targets).options(&options);
-                tracking.limits(&limits).transform(|_, found| slots(&found, roots, shown, certify))
+                let tracking = tracking.limits(&limits).up_to_symmetry(up_to_symmetry);
+                tracking.transform(|_, found| slots(&found, roots, shown, certify))
             })?;
             let found = found.map_err(Failure::input)?;
             let width = found.iter().map(|row| row.ends.len()).max().unwrap_or(0).max(roots);
@@ -171,15 +179,18 @@ struct Slots {
 }
 
 fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> Slots {
+    let counts = |s: &Solution| if s.singular { s.multiplicity } else { 1 };
     let (mut points, mut real, mut ends) = (Vec::new(), Vec::new(), Vec::with_capacity(roots));
     for solution in found {
         let end = if solution.singular { end::SINGULAR } else { end::FINITE };
-        for _ in 0..if solution.singular { solution.multiplicity } else { 1 } {
+        for _ in 0..counts(solution) {
             points.extend(&solution.value);
             real.push(solution.is_real);
             ends.push(end);
         }
     }
+    let images = found.iter().zip(&found.represents).map(|(s, &stands)| counts(s) * stands.saturating_sub(1)).sum();
+    ends.extend(std::iter::repeat_n(end::IMAGE, images));
     let rest = roots.saturating_sub(ends.len());
     // In a symmetric family a path stands for an orbit, whose size an end without a solution does
     // not tell: one lost path leaves all the rest in doubt.

@@ -56,6 +56,25 @@ def test_sympy():
     assert (tracked.ends == hc.End.FINITE).all()
 
 
+def test_solutions_up_to_symmetry():
+    # x^4 = p has four roots, which multiplication by i permutes; two of them are real for p = 16.
+    family = hc.Family(["x^4 - p"], "x", "p", symmetry=[["i*x"]])
+    fibre = family.monodromy(up_to_symmetry=True)
+    assert (len(fibre), fibre.represents, fibre.roots) == (1, [4], 4)
+    assert str(fibre).startswith("4 solutions (1 up to symmetry); stopped: ")
+    assert len(family.track([[16.0], [0.0]])[0]) == 4
+    tracked = family.track([[16.0], [0.0]], up_to_symmetry=True)
+    assert tracked.ends.tolist() == [[hc.End.FINITE] + [hc.End.IMAGE] * 3, [hc.End.SINGULAR] * 4]
+    assert tracked.n_real[0] == 1 and abs(tracked.real_points[0]).round(12).tolist() == [[2.0]]
+    assert tracked.complete.all() and len(tracked[0]) == 1
+    with pytest.raises(hc.InputError, match="exclude each other"):
+        family.monodromy(group=2, up_to_symmetry=True)
+    other = hc.Family(["x^4 - p"], "x", "p")
+    for ask in (other.monodromy, lambda **more: other.track([[16.0]], **more)):
+        with pytest.raises(hc.InputError, match="states no symmetry"):
+            ask(up_to_symmetry=True)
+
+
 def test_pandas():
     pandas = pytest.importorskip("pandas")
     made = tdoa.simulate(8, 10, noise=0.01, seed=1)

@@ -444,3 +444,55 @@ fn permutations_of_solutions_are_told_on_request() {
     assert_eq!((&quintic["blocks"], &quintic["symmetric"]), (&json!([[]]), &json!(true)));
     assert_eq!(group("x^5 + a*x + b", &[]).0, Value::Null);
 }
+
+/// Twelve solutions, `x` up to its sign and `y` up to third roots of one: two orbits of six, of which one is listed of
+/// each. The start file is read back whole.
+#[test]
+fn solutions_are_listed_up_to_symmetry_on_request() {
+    let directory = tempfile::tempdir().expect("directory");
+    let path = |name: &str| text(&directory.path().join(name)).to_owned();
+    let family = |symmetry: &str| {
+        let equations = "equations = ['(x^2 - a)*(x^2 - b)', 'y^3 - c']";
+        let content =
+            format!("name = ''\nunknowns = ['x', 'y']\nparameters = ['a', 'b', 'c']\n{equations}\n{symmetry}\n");
+        std::fs::write(path("family.toml"), content).expect("written");
+        path("family.toml")
+    };
+    let third = "y*(-0.5 + 0.86602540378443864676*i)";
+    let symmetric = family(&format!("symmetry = [['-x', 'y'], ['x', '{third}']]"));
+    std::fs::write(path("target.json"), r#"{"parameters": [4, 9, 8]}"#).expect("written");
+    let (start, target, solver) = (path("start.json"), path("target.json"), path("solver.rs"));
+    let ran = |arguments: &[&str]| {
+        let output = run("hc", arguments);
+        let [out, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
+        (output.status.code(), out, error)
+    };
+    let (status, _, error) = ran(&["monodromy", &symmetric, "--output", &start, "--up-to-symmetry"]);
+    assert!(status == Some(0) && error.contains("12 solutions (2 up to symmetry) after"), "{error}");
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(&start).expect("written")).expect("JSON");
+    assert_eq!((file["solutions"].as_array().map(Vec::len), &file["represents"]), (Some(2), &json!([6, 6])));
+    let track = |more: &[&str]| {
+        ran(&[&["track", &symmetric, "--start", &start, "--target", &target, "--json", "-"], more].concat())
+    };
+    let report = |json: &str| serde_json::from_str::<Value>(json).expect("JSON");
+    let all = report(&track(&[]).1);
+    assert_eq!((all["solutions"].as_array().map(Vec::len), &all["represents"]), (Some(12), &json!([])));
+    let listed = report(&track(&["--up-to-symmetry"]).1);
+    assert_eq!((listed["solutions"].as_array().map(Vec::len), &listed["represents"]), (Some(2), &json!([6, 6])));
+    // The real ones of each orbit have y = 2, and x = 2 or x = 3 up to the sign.
+    assert!([2.0, 3.0].iter().all(|x| [*x, -*x].iter().any(|x| has(&listed, &[*x, 2.0], 1e-9))), "{listed}");
+    assert_eq!(ran(&["codegen", &symmetric, &start, "-o", &solver]).0, Some(0));
+    assert!(std::fs::read_to_string(&solver).expect("written").contains("static SOLUTIONS: [[f64; 2]; 24]"));
+
+    let (status, _, error) = ran(&["monodromy", &symmetric, "--output", &start, "--up-to-symmetry", "--group", "3"]);
+    assert!(status == Some(2) && error.contains("cannot be used with"), "{error}");
+    let plain = family("");
+    for arguments in [
+        vec!["monodromy", &plain, "--output", &solver, "--up-to-symmetry"],
+        vec!["track", &plain, "--start", &start, "--target", &target, "--up-to-symmetry"],
+    ] {
+        let (status, _, error) = ran(&arguments);
+        let is_named = error.contains("states no symmetry") || error.contains("stands for 6 of its orbit, but");
+        assert!(status == Some(2) && is_named, "{error}");
+    }
+}

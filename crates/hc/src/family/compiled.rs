@@ -11,7 +11,7 @@ use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::solve::Solutions;
-use crate::tolerances::{families, same};
+use crate::tolerances::families;
 use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa, System};
 use serde::Serialize;
@@ -143,28 +143,6 @@ impl Family {
             Some(map) => Err(FamilyError::NotSymmetric { map: map + 1 }),
             None => Ok(()),
         }
-    }
-
-    /// The fibre with one solution of each orbit marked as representative, if the family has
-    /// symmetries. Only the representatives are then tracked.
-    #[must_use]
-    pub fn folded(&self, fibre: Fibre) -> Fibre {
-        if self.symmetry.is_trivial() || fibre.representatives.is_some() {
-            return fibre;
-        }
-        let mut known = vec![false; fibre.len()];
-        let mut representatives = Vec::new();
-        for k in 0..fibre.len() {
-            if known[k] {
-                continue;
-            }
-            representatives.push(k);
-            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), same::REGULAR);
-            for (j, known) in known.iter_mut().enumerate() {
-                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= same::REGULAR);
-            }
-        }
-        Fibre { representatives: Some(representatives), ..fibre }
     }
 
     /// A first solution, for some generic parameters; if one is found that parameters move, such a

@@ -1,5 +1,6 @@
 //! Why a family cannot be used.
 
+use super::start_file::StartFileError;
 use crate::checkpoint::CheckpointError;
 use crate::ranks::RanksError;
 use crate::tracker::OptionError;
@@ -49,6 +50,25 @@ pub enum FamilyError {
     NotSymmetric {
         /// The map, from 1.
         map: usize,
+    },
+    /// Solutions are asked for up to a symmetry, of which there is none.
+    #[error("the family states no symmetry; add `symmetry`, or ask for all solutions")]
+    NoSymmetry,
+    /// The start file cannot be used.
+    #[error(transparent)]
+    Start(#[from] StartFileError),
+    /// A listed solution whose orbit under the symmetry has another size than the file says.
+    #[error(
+        "solution {solution} stands for {stated} of its orbit, but by the family's symmetry for {found}; \
+        is the file that of another family? Compute it anew"
+    )]
+    Represents {
+        /// The solution, from 1.
+        solution: usize,
+        /// Number of solutions that the file says.
+        stated: usize,
+        /// Number of solutions of its orbit.
+        found: usize,
     },
     /// A fibre of another family.
     #[error(

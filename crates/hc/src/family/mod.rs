@@ -25,6 +25,7 @@ mod search;
 mod sides;
 mod start_file;
 mod still;
+mod stored;
 mod symmetry;
 mod target;
 mod targets;

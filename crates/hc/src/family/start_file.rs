@@ -14,6 +14,11 @@ pub struct StartFile {
     pub parameters: Vec<[f64; 2]>,
     /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
     pub solutions: Vec<Vec<[f64; 2]>>,
+    /// Where one solution of each orbit under the family's symmetry is listed
+    /// ([`Family::up_to_symmetry`](crate::Family::up_to_symmetry)): for how many each stands, itself among them. Empty
+    /// if all are listed.
+    #[serde(default)]
+    pub represents: Vec<usize>,
     /// Deviation found by the [trace test](crate::Family::trace_test), if it was run. A deviation
     /// of the size of rounding error shows that the orbits of the solutions are whole.
     #[serde(default)]
@@ -50,6 +55,14 @@ pub enum StartFileError {
         /// The place of the number.
         place: String,
     },
+    /// Not every solution has its number of solutions that it stands for.
+    #[error("{} in `represents`, but {listed} in `solutions`; write the start file anew", counted(*.found, "number"))]
+    Represents {
+        /// Number of listed solutions.
+        listed: usize,
+        /// Number of numbers.
+        found: usize,
+    },
     /// The solutions do not all have the same number of coordinates.
     #[error("solution {index} (counted from 1) has {}, the first has {expected}", counted(*.found, "coordinate"))]
     Ragged {
@@ -69,6 +82,7 @@ impl StartFile {
         StartFile {
             parameters: fibre.parameters.iter().map(pair).collect(),
             solutions: (0..fibre.len()).map(|k| fibre.solution(k).iter().map(pair).collect()).collect(),
+            represents: Vec::new(),
             trace_test,
             stopped: stopped.to_owned(),
             orbits: Vec::new(),
@@ -102,10 +116,11 @@ impl StartFile {
         // Numbers alone, which are always written.
         let group = serde_json::to_string(&self.monodromy_group).unwrap_or_else(|_| "null".to_owned());
         format!(
-            "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"trace_test\": {trace},\n  \"stopped\": {:?},\n  \
+            "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"represents\": {:?},\n  \"trace_test\": {trace},\n  \"stopped\": {:?},\n  \
              \"orbits\": {:?},\n  \"others\": {:?},\n  \"multiple\": [{}],\n  \"monodromy_group\": {group}\n}}\n",
             list(&self.parameters),
             solutions.join(",\n"),
+            self.represents,
             self.stopped,
             self.orbits,
             self.others,
@@ -113,11 +128,12 @@ impl StartFile {
         )
     }
 
-    /// The fibre itself; partial unless [`stopped`](Self::stopped) says that it is complete.
+    /// The listed solutions as a fibre; partial unless [`stopped`](Self::stopped) says that it is complete.
+    /// [`Family::stored`](crate::Family::stored) has those too for which they stand.
     ///
     /// # Errors
-    /// If a number is not finite or the solutions differ in length.
-    pub fn fibre(&self) -> Result<Fibre, StartFileError> {
+    /// If a number is not finite, the solutions differ in length, or it is not said of each for how many it stands.
+    pub(super) fn listed(&self) -> Result<Fibre, StartFileError> {
         let number = |[re, im]: [f64; 2], place: &dyn Fn() -> String| {
             let finite = re.is_finite() && im.is_finite();
             if finite { Ok(Complex64::new(re, im)) } else { Err(StartFileError::NotFinite { place: place() }) }
@@ -125,6 +141,10 @@ impl StartFile {
         let parameters = (self.parameters.iter().enumerate())
             .map(|(i, &p)| number(p, &|| format!("parameter {}", i + 1)))
             .collect::<Result<_, _>>()?;
+        let (listed, found) = (self.solutions.len(), self.represents.len());
+        if found != 0 && found != listed {
+            return Err(StartFileError::Represents { listed, found });
+        }
         let dimension = self.solutions.first().map_or(0, Vec::len);
         let mut solutions = Vec::new();
         for (k, solution) in self.solutions.iter().enumerate() {
@@ -168,6 +188,7 @@ mod tests {
         let fibre = Fibre::new(random.normals(5), 2, random.normals(14));
         let multiple = Multiple { value: random.normals(2), multiplicity: 3 };
         let file = StartFile {
+            represents: vec![1; 7],
             orbits: vec![5, 2],
             others: "roots".to_owned(),
             multiple: vec![multiple],
@@ -176,7 +197,7 @@ mod tests {
         };
         let again = StartFile::from_json(&file.to_json()).unwrap();
         assert_eq!(again, file);
-        assert_eq!(again.fibre().unwrap(), fibre);
+        assert_eq!(again.listed().unwrap(), fibre);
     }
 
     #[test]
@@ -186,14 +207,14 @@ mod tests {
             words.into_iter().chain([("component whole", false), ("no progress", false), ("", false)])
         {
             let file = StartFile::new(&Fibre::default(), None, stopped);
-            assert_eq!(file.fibre().unwrap().is_partial, !complete, "{stopped}");
+            assert_eq!(file.listed().unwrap().is_partial, !complete, "{stopped}");
         }
     }
 
     #[test]
     fn says_which_solution_is_ragged() {
         let text = r#"{"parameters": [], "solutions": [[[1, 0], [2, 0]], [[1, 0]]]}"#;
-        let error = StartFile::from_json(text).unwrap().fibre().unwrap_err();
+        let error = StartFile::from_json(text).unwrap().listed().unwrap_err();
         assert_eq!(error, StartFileError::Ragged { index: 2, expected: 2, found: 1 });
     }
 
@@ -201,7 +222,7 @@ mod tests {
         #[test]
         fn no_text_panics(text in ".{0,200}") {
             if let Ok(file) = StartFile::from_json(&text) {
-                let _ = file.fibre();
+                let _ = file.listed();
             }
         }
     }

@@ -43,6 +43,32 @@ impl Symmetry {
         }
         orbit
     }
+
+    /// The numbers of solutions for the parameters `p` by orbits, ascending, in the order of their first. Images of
+    /// solution `k` within the relative distance `tolerance(k)` of another solution are this one.
+    pub(super) fn orbits(
+        &self,
+        p: &[Complex64],
+        solutions: &[&[Complex64]],
+        tolerance: impl Fn(usize) -> f64,
+    ) -> Vec<Vec<usize>> {
+        let mut orbits = Vec::new();
+        let mut known = vec![false; solutions.len()];
+        for k in 0..solutions.len() {
+            if known[k] {
+                continue;
+            }
+            let tolerance = tolerance(k);
+            let images = self.orbit(p, solutions[k], tolerance);
+            let is_image = |x: &[Complex64]| images.iter().any(|image| relative_distance(image, x) <= tolerance);
+            let members: Vec<usize> =
+                (k..solutions.len()).filter(|&j| j == k || (!known[j] && is_image(solutions[j]))).collect();
+            members.iter().for_each(|&j| known[j] = true);
+            orbits.push(members);
+        }
+        orbits
+    }
+
     /// The first map, from 0, that takes one of these solutions of `system` for the parameters `p`
     /// to a point that is no regular solution.
     pub(super) fn broken<'x>(

@@ -10,14 +10,14 @@ use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
 use super::overdetermined::Verdict;
 use super::symmetry::Symmetry;
 use super::track::{moved as moved_fibre, track_fibre};
-use crate::distinct::coincidences;
+use crate::distinct::{coincidences, is_real};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::solve::{Solution, Solutions, SolveOptions, Stray, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
-use crate::tolerances::same;
+use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use std::time::Duration;
@@ -33,6 +33,7 @@ pub(super) struct TargetTracking<'a> {
     pub(super) options: SolveOptions,
     pub(super) limits: TargetLimits,
     pub(super) only_real: bool,
+    pub(super) up_to_symmetry: bool,
     pub(super) monitor: Monitor,
 }
 
@@ -146,7 +147,27 @@ impl TargetTracking<'_> {
         if self.only_real {
             found.solutions.retain(|s| s.is_real);
         }
+        if self.up_to_symmetry {
+            self.list_once(&mut found, target);
+        }
         found
+    }
+
+    /// Leaves one solution of each orbit: a real one if there is one, certified if all are.
+    fn list_once(&self, found: &mut Solutions, target: &[Complex64]) {
+        let all = std::mem::take(&mut found.solutions);
+        let points: Vec<&[Complex64]> = all.iter().map(|s| s.value.as_slice()).collect();
+        let regular = self.options.paths.coincidence;
+        let tolerance = |k: usize| if all[k].singular { same::SINGULAR.max(regular) } else { regular };
+        for orbit in self.family.symmetry.orbits(target, &points, tolerance) {
+            let real = orbit.iter().find(|&&k| all[k].is_real);
+            let mut listed = all[*real.unwrap_or(&orbit[0])].clone();
+            if orbit.iter().any(|&k| all[k].certified == Some(false)) {
+                listed.certified = Some(false);
+            }
+            found.solutions.push(listed);
+            found.represents.push(orbit.len());
+        }
     }
 }
 
@@ -211,7 +232,11 @@ impl Orbits {
             return None;
         }
         let images = |(s, orbit): (&Solution, Vec<Vec<Complex64>>)| {
-            orbit.into_iter().map(|value| Solution { value, ..s.clone() }).collect::<Vec<_>>()
+            let image = |value: Vec<Complex64>| {
+                let is_real = is_real(&value, ends::REAL);
+                Solution { value, is_real, ..s.clone() }
+            };
+            orbit.into_iter().map(image).collect::<Vec<_>>()
         };
         Some(found.iter().zip(orbits).flat_map(images).collect())
     }

@@ -40,8 +40,8 @@ impl Family {
 
 impl Run {
     /// [`Family::track`], run in this way. Targets with their solutions are recorded. The family,
-    /// the fibre, the targets and all options except [`certify`](SolveOptions::certify) and
-    /// [`only_real`](Targets::only_real) must be those of the run that a checkpoint belongs to.
+    /// the fibre, the targets and all options except [`certify`](SolveOptions::certify),
+    /// [`only_real`](Targets::only_real) and [`up_to_symmetry`](Targets::up_to_symmetry) must be those of the run that a checkpoint belongs to.
     pub fn track<'a, T, Z>(&self, family: &'a Family, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
     where
         T: AsRef<[Z]>,
@@ -61,7 +61,8 @@ impl<'a> RanksRun<'a> {
     {
         let monitor = self.run.monitor().clone();
         let (options, limits) = (SolveOptions::default(), TargetLimits::default());
-        let tracking = TargetTracking { family, fibre, options, limits, only_real: false, monitor };
+        let (only_real, up_to_symmetry) = (false, false);
+        let tracking = TargetTracking { family, fibre, options, limits, only_real, up_to_symmetry, monitor };
         let targets = targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect();
         Targets { tracking, targets, enough: None, run: self.clone() }
     }
@@ -93,6 +94,12 @@ impl<'a> Targets<'a> {
         Targets { tracking: TargetTracking { only_real, ..self.tracking }, ..self }
     }
 
+    /// Lists one solution of each orbit under the family's symmetry, a real one if there is one, and says in
+    /// [`Solutions::represents`] for how many of what is asked for it stands. Default false.
+    pub fn up_to_symmetry(self, up_to_symmetry: bool) -> Self {
+        Targets { tracking: TargetTracking { up_to_symmetry, ..self.tracking }, ..self }
+    }
+
     /// Stops after the first target, in their order, for which `enough` returns true. `enough` gets
     /// the number of the target, from 0, and its result.
     pub fn until(self, enough: impl FnMut(usize, &Solutions) -> bool + Send + 'a) -> Self {
@@ -104,7 +111,7 @@ impl<'a> Targets<'a> {
     ///
     /// # Errors
     /// If the fibre or a target does not fit the family, a stated symmetry of the family is not
-    /// one, an option is out of range, the checkpoint belongs to another run or cannot be written,
+    /// one or one is needed that is not stated, an option is out of range, the checkpoint belongs to another run or cannot be written,
     /// or another rank fails.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
@@ -140,6 +147,9 @@ impl<'a> Targets<'a> {
         if tracking.options.certify && equations > unknowns {
             return Err(FamilyError::Uncertifiable { equations, unknowns });
         }
+        if tracking.up_to_symmetry && tracking.family.symmetry.is_trivial() {
+            return Err(FamilyError::NoSymmetry);
+        }
         let parameters = tracking.fibre.parameters.len();
         let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
         match targets.iter().position(unusable) {
@@ -159,6 +169,9 @@ impl<'a> Targets<'a> {
         let checkpoint = circumstances.checkpoint();
         tracking.family.check_solutions(tracking.fibre)?;
         let orbits = Orbits::of(tracking.family, tracking.fibre)?;
+        if tracking.up_to_symmetry && orbits.is_none() {
+            tracking.family.check_symmetry(tracking.fibre)?;
+        }
         if let Some(checkpoint) = checkpoint {
             checkpoint.begin(job(&tracking, &targets))?;
         }

@@ -3,7 +3,8 @@
 use super::error::SolveError;
 use super::options::{SolveOptions, Start};
 use super::polynomials::{SolveContext, solve_polynomials, solve_written};
-use super::solutions::{Direction, Solutions, is_real};
+use super::solutions::{Direction, Solutions};
+use crate::distinct::is_real;
 use crate::monitor::Monitor;
 use crate::start::bezout_number;
 use crate::tolerances::{ends, equations};

@@ -3,6 +3,7 @@
 use super::options::Start;
 use super::warning::Warning;
 use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certify};
+use crate::distinct::is_real;
 use crate::family::{Limit, PathCounts};
 use crate::tolerances::ends;
 use num_complex::Complex64;
@@ -81,7 +82,7 @@ impl PartialEq for Member {
 }
 
 /// The result of [`solve`](crate::solve): the distinct isolated solutions, and what became of the
-/// paths. It is serialized without the names of the unknowns and the system.
+/// paths. It is serialized without the names of the unknowns, the system, and [`represents`](Self::represents).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Solutions {
@@ -125,6 +126,11 @@ pub struct Solutions {
     pub limited: Option<Limit>,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
+    /// Where one solution of each orbit under a family's symmetry is listed
+    /// ([`Targets::up_to_symmetry`](crate::family::Targets::up_to_symmetry)): for how many each stands, itself among
+    /// them. Empty if all are listed.
+    #[serde(skip)]
+    pub represents: Vec<usize>,
     /// Ends of paths at which the equations nearly vanish, but which could not be judged. Their
     /// paths count as failed.
     pub unresolved: Vec<Unresolved>,
@@ -143,9 +149,14 @@ pub struct Unresolved {
 }
 
 impl Solutions {
-    /// Number of distinct isolated solutions.
+    /// Number of distinct isolated solutions that are listed.
     pub fn len(&self) -> usize {
         self.solutions.len()
+    }
+
+    /// Number of distinct isolated solutions, with those for which listed ones [stand](Self::represents).
+    pub fn count(&self) -> usize {
+        if self.represents.is_empty() { self.len() } else { self.represents.iter().sum() }
     }
 
     /// Whether all points have so many coordinates.
@@ -265,10 +276,4 @@ impl<'a> IntoIterator for &'a Solutions {
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }
-}
-
-/// Whether all imaginary parts are at most this share of the largest coordinate, or of one.
-pub(super) fn is_real(point: &[Complex64], tolerance: f64) -> bool {
-    let size = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
-    point.iter().all(|z| z.im.abs() <= tolerance * size)
 }

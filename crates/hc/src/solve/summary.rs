@@ -36,7 +36,11 @@ pub fn coordinates(names: &[String], point: &[Complex64]) -> String {
 impl fmt::Display for Solutions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (paths, real) = (&self.paths, self.n_real());
-        writeln!(f, "{}, {real} real", counted(self.len(), "isolated solution"))?;
+        let isolated = counted(self.count(), "isolated solution");
+        match self.represents.len() {
+            0 => writeln!(f, "{isolated}, {real} real")?,
+            listed => writeln!(f, "{isolated}, {listed} up to symmetry; {real} of these real")?,
+        }
         let mut multiplicities: BTreeMap<usize, usize> = BTreeMap::new();
         for solution in self.iter().filter(|s| s.singular) {
             *multiplicities.entry(solution.multiplicity).or_default() += 1;

@@ -65,6 +65,39 @@ fn a_path_at_infinity_takes_its_orbit_along() {
     assert_eq!(listed(&found[1]).len(), 4);
 }
 
+/// Of the solutions of each target one of each orbit, and how many it stands for.
+#[test]
+fn solutions_are_listed_up_to_symmetry_on_request() {
+    let family: Family = SQUARES.parse().unwrap();
+    let fibre = family.monodromy(&options()).unwrap().fibre;
+    let targets = [[4.0, 9.0], [0.0, 9.0], [0.0, 0.0], [-4.0, 9.0]];
+    let found = family.track(&fibre, &targets).up_to_symmetry(true).run().unwrap();
+    let counts = |found: &hc::Solutions| (found.len(), found.represents.clone(), found.count());
+    assert_eq!(found.iter().map(counts).collect::<Vec<_>>(), [4, 2, 1, 4].map(|n| (1, vec![n], n)).to_vec());
+    assert_eq!(found.iter().map(|found| found.solutions[0].multiplicity).collect::<Vec<_>>(), [1, 2, 4, 1]);
+    assert!(found[0].to_string().starts_with("4 isolated solutions, 1 up to symmetry; 1 of these real\n"));
+    let all = family.track(&fibre, &targets).run().unwrap();
+    assert!(all.iter().all(|found| found.represents.is_empty() && found.count() == found.len()));
+
+    // Roots of x^4 = p are multiples of a real one by powers of i.
+    let powers: Family =
+        "name = ''\nunknowns = ['x']\nparameters = ['p']\nequations = ['x^4 - p']\nsymmetry = [['i*x']]"
+            .parse()
+            .unwrap();
+    let fibre = powers.monodromy(&options()).unwrap().fibre;
+    let track = || powers.track(&fibre, &[[16.0]]).up_to_symmetry(true);
+    let found = &track().run().unwrap()[0];
+    assert!(found.represents == [4] && found.solutions[0].is_real, "{found}");
+    assert_eq!(track().only_real(true).run().unwrap()[0].represents, [2]);
+    let mut certified = hc::SolveOptions::new();
+    certified.certify = true;
+    assert_eq!(track().options(&certified).run().unwrap()[0].solutions[0].certified, Some(true));
+
+    let none = Family::from_formulas(&["x"], &["p"], &["x^4 - p"]).unwrap();
+    let refused = none.track(&fibre, &[[16.0]]).up_to_symmetry(true).run().unwrap_err();
+    assert_eq!(refused, FamilyError::NoSymmetry);
+}
+
 #[test]
 fn maps_that_are_no_symmetry_are_refused() {
     let wrong = SQUARES.replace("[\"x\", \"-y\"]", "[\"x\", \"2*y\"]");

@@ -147,6 +147,7 @@ class End(enum.IntEnum):
     AT_INFINITY = 2
     ON_COMPONENT = 3
     FAILED = 4
+    IMAGE = 5
 
 class Tracked(_Result):
     points: NDArray[np.complex128]
@@ -168,6 +169,7 @@ class Tracked(_Result):
 class Fibre:
     parameters: NDArray[np.complex128]
     points: NDArray[np.complex128]
+    represents: list[int]
     trace_test: float | None
     stopped: str
     orbits: list[int]
@@ -175,6 +177,8 @@ class Fibre:
     multiple: list[tuple[NDArray[np.complex128], int]]
     monodromy_group: dict[str, Any] | None
     def __init__(self, text: str) -> None: ...
+    @property
+    def roots(self) -> int: ...
     @property
     def complete(self) -> bool: ...
     def to_json(self) -> str: ...
@@ -192,6 +196,7 @@ class Compiled:
         targets: ArrayLike,
         *,
         certify: bool = False,
+        up_to_symmetry: bool = False,
         again: float = 1.0,
         time_limit: float | None = None,
         threads: int | None = None,
@@ -228,6 +233,7 @@ class Family:
         trace: bool = True,
         only_component: bool = False,
         group: int = 0,
+        up_to_symmetry: bool = False,
         threads: int | None = None,
         progress: _Progress = True,
     ) -> Fibre: ...
@@ -238,6 +244,7 @@ class Family:
         *,
         fibre: Fibre | None = None,
         certify: bool = False,
+        up_to_symmetry: bool = False,
         again: float = 1.0,
         time_limit: float | None = None,
         threads: int | None = None,

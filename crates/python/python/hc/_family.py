@@ -17,13 +17,14 @@ from ._system import formulas, names, split
 
 
 class End(enum.IntEnum):
-    """How a slot of a target's solutions was filled."""
+    """How a slot of a target's solutions was filled; `IMAGE` is for the images of a listed solution under the symmetry."""
 
     FINITE = 0
     SINGULAR = 1
     AT_INFINITY = 2
     ON_COMPONENT = 3
     FAILED = 4
+    IMAGE = 5
 
 
 class Tracked(Result):
@@ -33,6 +34,7 @@ class Tracked(Result):
     ----------
     points : ndarray of complex, shape (k, roots, n)
         The solutions for each target; NaN where a slot has none. A singular solution fills as many slots as it counts.
+        Those that listed ones stand for, where `up_to_symmetry` was asked for, are `IMAGE` in `ends`, and NaN.
     ends : ndarray of int8, shape (k, roots)
         How each slot was filled, an `End`.
     is_real : ndarray of bool, shape (k, roots)
@@ -86,7 +88,9 @@ class Fibre:
     parameters : ndarray of complex, shape (p,)
         The parameter point.
     points : ndarray of complex, shape (roots, n)
-        The solutions.
+        The solutions; one of each orbit where `up_to_symmetry` was asked for.
+    represents : list of int
+        For how many solutions each of these points stands, where they are listed up to symmetry; otherwise empty.
     trace_test : float or None
         Deviation found by the trace test: rounding error shows that the orbits of the solutions are whole.
     stopped : str
@@ -119,6 +123,7 @@ class Fibre:
         # No arithmetic: zeros keep their signs.
         self.points = rows.view(complex)[..., 0]
         self.parameters = pairs.view(complex)[..., 0]
+        self.represents = data.get("represents", [])
         self.trace_test = data.get("trace_test")
         self.stopped = data.get("stopped", "")
         self.orbits = data.get("orbits", [])
@@ -127,6 +132,11 @@ class Fibre:
             (np.array(each["value"], dtype=float).view(complex)[..., 0], each["multiplicity"]) for each in data.get("multiple", [])
         ]
         self.monodromy_group = data.get("monodromy_group")
+
+    @property
+    def roots(self):
+        """Number of solutions, with those that listed ones stand for."""
+        return sum(self.represents) if self.represents else len(self)
 
     @property
     def complete(self):
@@ -142,7 +152,8 @@ class Fibre:
 
     def __repr__(self):
         trace = "" if self.trace_test is None else f", trace test {self.trace_test:.1e}"
-        return f"{counted(len(self), 'solution')}; stopped: {self.stopped}{trace}"
+        listed = f" ({len(self)} up to symmetry)" if self.represents else ""
+        return f"{counted(self.roots, 'solution')}{listed}; stopped: {self.stopped}{trace}"
 
     def __eq__(self, other):
         return isinstance(other, Fibre) and self._text == other._text
@@ -167,9 +178,9 @@ class Compiled:
     @property
     def roots(self):
         """Number of solutions that are tracked to each target."""
-        return len(self._fibre)
+        return self._fibre.roots
 
-    def __call__(self, targets, *, certify=False, again=1.0, time_limit=None, threads=None, progress=True):
+    def __call__(self, targets, *, certify=False, up_to_symmetry=False, again=1.0, time_limit=None, threads=None, progress=True):
         """Track all solutions to each target: see `Family.track`."""
         rows = complex_rows("targets", targets)
         parameters = self._family.parameters
@@ -180,6 +191,7 @@ class Compiled:
             self._native,
             rows,
             bool(certify),
+            bool(up_to_symmetry),
             (number("again", again), number("time_limit", time_limit)),
             threads=threads,
             progress=progress,
@@ -303,6 +315,7 @@ class Family:
         trace=True,
         only_component=False,
         group=0,
+        up_to_symmetry=False,
         threads=None,
         progress=True,
     ):
@@ -326,6 +339,8 @@ class Family:
             Whether only the solutions are sought that loops join to the first.
         group : int
             Loops along which all solutions are followed in the end, to tell the monodromy group.
+        up_to_symmetry : bool
+            Whether one solution of each orbit under the `symmetry` is listed; not together with `group`.
         threads, progress
             As in `hc.solve`.
 
@@ -339,6 +354,8 @@ class Family:
         KeyboardInterrupt
             On Ctrl-C, with the solutions so far as `partial`.
         """
+        if group and up_to_symmetry:
+            raise InputError("group and up_to_symmetry exclude each other: permutations are those of all solutions")
         if first is not None and not isinstance(first, Fibre):
             first = _pair(*first)
         native = None if first is None else self._native.fibre(first.to_json())
@@ -351,6 +368,7 @@ class Family:
             bool(trace),
             bool(only_component),
             integer("group", group) or 0,
+            bool(up_to_symmetry),
             native,
             threads=threads,
             progress=progress,
@@ -375,7 +393,18 @@ class Family:
         fibre = fibre if fibre is not None else self.fibre
         return Compiled(self, fibre if fibre is not None else self.monodromy())
 
-    def track(self, targets, *, fibre=None, certify=False, again=1.0, time_limit=None, threads=None, progress=True):
+    def track(
+        self,
+        targets,
+        *,
+        fibre=None,
+        certify=False,
+        up_to_symmetry=False,
+        again=1.0,
+        time_limit=None,
+        threads=None,
+        progress=True,
+    ):
         """Find the solutions for many parameter points, in parallel.
 
         Parameters
@@ -384,6 +413,8 @@ class Family:
             Parameter points, real or complex.
         fibre, certify, threads, progress
             All solutions for one parameter point as in `compile`; whether solutions are proved; as in `hc.solve`.
+        up_to_symmetry : bool
+            Whether one solution of each orbit under the `symmetry` is listed, a real one if there is one.
         again : float
             Paths that are tracked again for a target, at most, in multiples of the paths of its first pass. What is lost
             then has `End.FAILED`. With 2 and more detours are tried first.
@@ -401,7 +432,15 @@ class Family:
             On Ctrl-C, with the targets so far as `partial`.
         """
         track = self.compile(fibre)
-        return track(targets, certify=certify, again=again, time_limit=time_limit, threads=threads, progress=progress)
+        return track(
+            targets,
+            certify=certify,
+            up_to_symmetry=up_to_symmetry,
+            again=again,
+            time_limit=time_limit,
+            threads=threads,
+            progress=progress,
+        )
 
     def __repr__(self):
         name = f"{self.name}: " if self.name else ""

@@ -93,7 +93,16 @@ class Family:
         trace: bool,
         only_component: bool,
         group: int,
+        up_to_symmetry: bool,
         first: Fibre | None,
         how: _How,
     ) -> _Found: ...
-    def track(self, fibre: Fibre, targets: NDArray[np.complex128], certify: bool, effort: tuple[float, float | None], how: _How) -> _Found: ...
+    def track(
+        self,
+        fibre: Fibre,
+        targets: NDArray[np.complex128],
+        certify: bool,
+        up_to_symmetry: bool,
+        effort: tuple[float, float | None],
+        how: _How,
+    ) -> _Found: ...
