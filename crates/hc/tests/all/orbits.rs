@@ -48,6 +48,15 @@ fn kinds(k: usize) -> Vec<Kind> {
     add("x", "a b", format!("((x - {far})^2 - a)*(x^2 - b) - 1/100"), 4, &[]);
     // Scales that differ.
     add("x y", "a b", format!("(x^{d} - a/{scale})*(x - {scale}*b); x*y - 1"), d + 1, &[]);
+    // More equations than unknowns, of which the last follows from the others.
+    add("x y", "a b", format!("x^{d} - a; x*y - b; a*y^{d} - b^{d}"), d, &[]);
+    // A stated symmetry, with orbits of two, and with zero besides.
+    for (equation, count) in [(format!("x^{} + a*x^2 + b", 2 * d), 2 * d), (format!("x*(x^{} - a)", 2 * e), 1 + 2 * e)]
+    {
+        let symmetric = hc::poly::Family::from_formulas(&["x"], &["a", "b"], &[equation]).unwrap();
+        let family = Family::new(symmetric.with_symmetry(&["-x"]).unwrap()).unwrap();
+        kinds.push(Kind { family, count, multiplicities: Vec::new() });
+    }
     kinds
 }
 
