@@ -54,6 +54,12 @@ const FAMILIES: &[Known] = &[
         "examples/families/five_point.start.json",
         "crates/hc/examples/five_point/generated.rs",
     ),
+    known(
+        "signs",
+        "crates/hc/tests/all/stated/signs.toml",
+        "crates/hc/tests/all/stated/signs.start.json",
+        "crates/hc/tests/all/stated/generated.rs",
+    ),
 ];
 
 /// Families whose fibres are packed, and where both are.

@@ -8,8 +8,8 @@ use crate::family::{Family, FamilyError, Fibre, PackedFibreError, StartFile, pac
 use crate::refine::Refiner;
 use crate::tolerances::{families, same};
 use num_complex::Complex64;
-use poly::counted;
 use poly::program::{EmitError, EmitOptions, emit};
+use poly::{Evaluate, counted};
 use std::fmt::Write;
 use thiserror::Error;
 
@@ -80,7 +80,8 @@ pub enum CodegenError {
 /// Writes a family and its solutions for a generic parameter point as a Rust module.
 ///
 /// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a
-/// function `fibre()` that returns the stored solutions as a [`Fibre`]. Its header
+/// function `fibre()` that returns the stored solutions as a [`Fibre`]. The function `stated()` has what the family states
+/// besides its equations, factors that do not vanish and symmetries, as a [`Stated`](crate::family::Stated). The header
 /// names the `source`. Only the arguments determine the bytes.
 ///
 /// The stored solutions are checked first: they must solve the equations, be regular, distinct and
@@ -110,6 +111,18 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     let mut text = emit(family.program().program(), &options)?;
     // Writing to a string cannot fail.
     let _ = append_fibre(&mut text, start, &fibre);
+    let factors = Some(family.factors()).filter(|factors| factors.equations() > 0);
+    let mut stated = String::new();
+    for (name, doc, program) in [
+        ("nonzero", "Factors that do not vanish at a solution, one an equation.", factors),
+        ("symmetry", "Images of a solution that are solutions, the coordinates of all as equations.", family.maps()),
+    ] {
+        let Some(program) = program else { continue };
+        let module = emit(program.program(), &options)?;
+        let _ = write!(text, "/// {doc}\n#[allow(dead_code)]\npub mod {name} {{\n{module}}}\n");
+        let _ = write!(stated, ".{name}(&{name}::System)");
+    }
+    let _ = append_stated(&mut text, &stated);
     Ok(text)
 }
 
@@ -175,6 +188,15 @@ fn append_fibre(text: &mut String, start: &StartFile, fibre: &Fibre) -> std::fmt
     writeln!(text, "/// All solutions for a generic parameter point.")?;
     writeln!(text, "pub fn fibre() -> hc::Fibre {{")?;
     writeln!(text, "    hc::Fibre::from_pairs(&PARAMETERS, {unknowns}, &SOLUTIONS)")?;
+    writeln!(text, "}}")
+}
+
+/// The function that has what the family states besides its equations, by these calls.
+fn append_stated(text: &mut String, calls: &str) -> std::fmt::Result {
+    writeln!(text, "/// What the family states of its solutions besides its equations.")?;
+    writeln!(text, "#[allow(dead_code)]")?;
+    writeln!(text, "pub fn stated() -> hc::family::Stated<'static> {{")?;
+    writeln!(text, "    hc::family::Stated::default(){calls}")?;
     writeln!(text, "}}")
 }
 

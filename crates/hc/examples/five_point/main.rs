@@ -24,7 +24,7 @@ const PROBLEMS: usize = 1000;
 fn main() {
     let fibre = generated::fibre();
     let (count, system, options) = (fibre.len(), generated::System, FibreOptions::default());
-    let mut tracker = FibreTracker::new(&system, OneChart, &fibre);
+    let mut tracker = FibreTracker::new(&system, OneChart, &fibre).stating(generated::stated());
     let mut refiner = Refiner::new(&system);
     let mut random = Random::new(0, 5);
     let (mut found, mut lost, mut retracked, mut seconds) = (0, 0, 0, 0.0);

@@ -4,6 +4,7 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::overdetermined::{Overdetermined, Verdict};
 use super::pair::{Beginning, MOVING_TRIES, Pairs, TRIES};
+use super::stated::{Stated, Vanishing};
 use super::still::{Still, refined};
 use super::symmetry::Symmetry;
 use crate::checkpoint::{self, Hash, Job};
@@ -68,7 +69,7 @@ impl Family {
         if let Some(k) = family.symmetry.iter().position(|map| map.len() != unknowns) {
             return Err(FamilyError::Symmetry { map: k + 1, found: family.symmetry[k].len(), unknowns });
         }
-        let symmetry = Symmetry::new(&family.symmetry)?;
+        let symmetry = Symmetry::new(&family.system, &family.symmetry)?;
         Ok(Family { given: family, program, overdetermined, nonzero, symmetry })
     }
 
@@ -200,28 +201,35 @@ impl Family {
         Ok(polished)
     }
 
+    /// What the family states of its solutions besides its equations, for a
+    /// [`FibreTracker`](crate::family::FibreTracker).
+    pub fn stated(&self) -> Stated<'_> {
+        let stated = Stated::default().nonzero(&self.nonzero);
+        match self.symmetry.program() {
+            Some(maps) => stated.symmetry(maps),
+            None => stated,
+        }
+    }
+
+    /// The factors that must not vanish, one an equation.
+    #[cfg(feature = "codegen")]
+    pub(crate) fn factors(&self) -> &Interpreter {
+        &self.nonzero
+    }
+
+    /// The coordinates of the images under all maps of the symmetry; `None` if there are none.
+    #[cfg(feature = "codegen")]
+    pub(crate) fn maps(&self) -> Option<&Interpreter> {
+        self.symmetry.program()
+    }
+
     /// Drops solutions outside the family, where a factor vanishes that it declares nonzero. The paths to them count
     /// as failed. A path can jump to them, and shares its end with no other path then, so that nothing else shows it.
-    ///
-    /// A factor has vanished at a solution `x` if a change of `x` by a small share of its largest coordinate
-    /// would make it vanish. Unlike [`accepts`](Self::accepts), which is for generic parameters of size one, this
-    /// does not depend on the unit of the unknowns.
     pub(super) fn keep_own(&self, p: &[Complex64], found: &mut Solutions) {
-        let (factors, n) = (self.nonzero.equations(), self.nonzero.variables());
-        if factors == 0 {
-            return;
-        }
-        let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
-        let (mut values, mut gradients) = (zeros(factors), zeros(factors * n));
-        let mut memory = self.nonzero.memory(Isa::Portable);
+        let mut vanishing = Vanishing::new(&self.nonzero);
         let mut paths = 0;
         found.solutions.retain(|solution| {
-            let x = &solution.value;
-            self.nonzero.jacobian(&mut memory, x, p, &mut values, &mut gradients);
-            let largest = x.iter().map(|z| z.norm()).fold(0.0, f64::max);
-            let slopes = gradients.chunks(n).map(|row| row.iter().map(|z| z.norm()).sum::<f64>());
-            let degenerates =
-                values.iter().zip(slopes).any(|(value, slope)| value.norm() <= families::DEGENERATE * slope * largest);
+            let degenerates = vanishing.at(p, &solution.value);
             paths += usize::from(degenerates) * solution.multiplicity;
             !degenerates
         });

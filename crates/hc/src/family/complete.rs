@@ -80,7 +80,7 @@ impl Family {
         lead: Option<&Lead<'_>>,
     ) -> Result<Monodromy, FamilyError> {
         self.check_search(first, options)?;
-        let options = self.stated(options);
+        let options = self.with_roots(options);
         if let Some(checkpoint) = checkpoint {
             checkpoint.begin(self.search_job(first, &options))?;
         }
@@ -155,7 +155,7 @@ impl Family {
 
     /// The options, with the number of roots that the family states unless they have one, or ask for a
     /// single orbit.
-    fn stated(&self, options: &MonodromyOptions) -> MonodromyOptions {
+    fn with_roots(&self, options: &MonodromyOptions) -> MonodromyOptions {
         let of_family = self.roots().filter(|_| !options.only_component);
         MonodromyOptions { roots: options.roots.or(of_family), ..options.clone() }
     }
@@ -316,7 +316,7 @@ impl RanksRun<'_> {
     ) -> Result<Option<Monodromy>, FamilyError> {
         let Some(ranks) = self.ranks else { return self.run.complete(family, first, options).map(Some) };
         self.run.install(|| {
-            let fingerprint = family.search_job(first, &family.stated(options)).fingerprint();
+            let fingerprint = family.search_job(first, &family.with_roots(options)).fingerprint();
             if ranks.is_lead() {
                 let (monitor, checkpoint) = (self.run.monitor(), self.run.checkpoint());
                 return Lead::at(ranks, &fingerprint, |lead| {

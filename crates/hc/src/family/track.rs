@@ -2,6 +2,7 @@
 
 use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
+use super::stated::Stated;
 use super::tracking::{FibreMemory, FibreWork, PathTrackers};
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
@@ -87,6 +88,7 @@ pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     monitor: Monitor,
     paths: PathSet,
     workspace: RunMemory<FibreMemory<'a, E>, PathSet>,
+    stated: Stated<'a>,
 }
 
 impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
@@ -119,7 +121,19 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             monitor: Monitor::default(),
             paths: PathSet::with_capacity(dimension, paths),
             workspace: RunMemory { memory: FibreMemory::new(system, lanes, fibre, paths), batch, which },
+            stated: Stated::default(),
         }
+    }
+
+    /// The same, for a family that states more than its equations.
+    ///
+    /// [`track`](Self::track) then counts ends at which a factor vanishes as failed ([`PathEnd::Degenerate`]); a path can
+    /// jump to them. Of each orbit under a symmetry one path is tracked, and the others end at its images, with no steps
+    /// of their own. All are tracked where these paths do not tell where the others end: where one is lost, or images
+    /// meet.
+    #[must_use]
+    pub fn stating(self, stated: Stated<'a>) -> Self {
+        FibreTracker { stated, ..self }
     }
 
     /// Sets the monitor that may stop later work. The default monitor stops nothing.
@@ -143,12 +157,46 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// # Panics
     /// If `target` or the fibre does not fit the system.
     pub fn track(&mut self, fibre: &Fibre, target: &[Complex64], options: &FibreOptions) -> PathCounts {
-        self.track_until(fibre, target, options, fibre.len(), |_| false).0
+        let mut stated = std::mem::take(&mut self.stated);
+        let counts = self.track_stated(&mut stated, fibre, target, options);
+        self.stated = stated;
+        counts
+    }
+
+    /// [`track`](Self::track), with what is stated.
+    fn track_stated(
+        &mut self,
+        stated: &mut Stated<'a>,
+        fibre: &Fibre,
+        target: &[Complex64],
+        options: &FibreOptions,
+    ) -> PathCounts {
+        let mut unfolded = None;
+        let mut before = 0;
+        if let Some(orbits) = stated.orbits(fibre) {
+            let tracked = orbits.tracked();
+            let counts = self.track_until(&tracked, target, options, tracked.len(), |_| false).0;
+            if counts.failed == 0 && orbits.unfold(target, &mut self.paths, options.coincidence) {
+                unfolded = Some(PathCounts { retracked: counts.retracked, ..self.counts(0) });
+            }
+            before = counts.tracked + counts.retracked;
+        }
+        let mut counts = match unfolded {
+            Some(counts) => counts,
+            None => {
+                let all = self.track_until(fibre, target, options, fibre.len(), |_| false).0;
+                PathCounts { retracked: all.retracked + before, ..all }
+            }
+        };
+        let degenerate = stated.mark(target, &mut self.paths).min(counts.finite);
+        counts.finite -= degenerate;
+        counts.failed += degenerate;
+        counts
     }
 
     /// [`track`](Self::track) in portions of `size` paths in the first pass. `enough` sees each
     /// portion; once it returns true, the remaining paths are left. The result also says whether
-    /// `enough` returned true; the counts then cover the paths so far.
+    /// `enough` returned true; the counts then cover the paths so far. What is [stated](Self::stating) is left aside.
     ///
     /// # Panics
     /// Those of [`track`](Self::track).

@@ -1,5 +1,7 @@
 //! How paths ended.
 
+use crate::distinct::is_real;
+use crate::tolerances::ends;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +16,9 @@ pub enum PathEnd {
     AtInfinity,
     /// The path stays bounded until `t` is nearly zero, but its end is not a regular solution.
     Singular,
+    /// The path ended at a solution at which a factor vanishes that the family
+    /// [declares nonzero](crate::family::Stated::nonzero): it has jumped, or the parameters are degenerate.
+    Degenerate,
     /// The start point is not a solution of the start system.
     InvalidStart,
     /// The Jacobian is so ill-conditioned that even residuals in double-double do not help.
@@ -121,6 +126,12 @@ impl PathSet {
         self.results.iter().enumerate().map(|(k, r)| (r, self.point(k)))
     }
 
+    /// Whether the `k`-th path ended at a regular solution that is real: all imaginary parts are below 1e-10 of the
+    /// largest coordinate, or of one.
+    pub fn is_real(&self, k: usize) -> bool {
+        self.results[k].end == PathEnd::Success && is_real(self.point(k), ends::REAL)
+    }
+
     /// Number of paths with this kind of end.
     pub fn count(&self, end: PathEnd) -> usize {
         self.results.iter().filter(|r| r.end == end).count()
@@ -192,7 +203,8 @@ impl PathSet {
 
 #[cfg(test)]
 mod tests {
-    use super::{PathResult, PathSet};
+    use super::{PathEnd, PathResult, PathSet};
+    use num_complex::Complex64;
     use proptest::prelude::{Just, Strategy, prop, prop_assert, proptest};
 
     proptest! {
@@ -209,6 +221,24 @@ mod tests {
             sorted.sort_unstable();
             prop_assert!(set.results().iter().map(|r| r.path).eq(sorted));
         }
+    }
+
+    /// Relative to coordinates above one; ends that are no solutions are not real.
+    #[test]
+    fn real_ends_are_regular_and_have_no_imaginary_parts() {
+        let mut set = PathSet::new(2);
+        let ends = [
+            (PathEnd::Success, 1.0, 0.0, true),
+            (PathEnd::Success, 1e-3, 9e-11, true),
+            (PathEnd::Success, 1e6, 9e-5, true),
+            (PathEnd::Success, 1.0, 2e-10, false),
+            (PathEnd::Singular, 1.0, 0.0, false),
+            (PathEnd::AtInfinity, 1.0, 0.0, false),
+        ];
+        for (k, &(end, re, im, _)) in ends.iter().enumerate() {
+            set.push(PathResult { end, ..PathResult::cancelled(k) }, [Complex64::new(re, im), 0.0.into()]);
+        }
+        assert!(ends.iter().enumerate().all(|(k, end)| set.is_real(k) == end.3));
     }
 
     /// All numbers up to some, in any order, or any numbers.

@@ -15,6 +15,7 @@ mod scales;
 mod singular;
 mod small_systems;
 mod solving;
+mod stated;
 mod symmetry;
 mod tracking;
 mod written;

@@ -819,3 +819,8 @@ static SOLUTIONS: [[f64; 2]; 30] = [
 pub fn fibre() -> hc::Fibre {
     hc::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
 }
+/// What the family states of its solutions besides its equations.
+#[allow(dead_code)]
+pub fn stated() -> hc::family::Stated<'static> {
+    hc::family::Stated::default()
+}

@@ -1,0 +1,107 @@
+//! Trackers of fibres that know factors and symmetries: of interpreted families, and of a generated module.
+
+// Written by `cargo xtask codegen --only signs`.
+#[rustfmt::skip]
+mod generated;
+
+use hc::family::{FibreOptions, FibreTracker, OneChart, PathCounts};
+use hc::poly::Complex64;
+use hc::random::Random;
+use hc::tracker::{PathEnd, PathSet};
+use hc::{Family, Fibre, MonodromyOptions};
+
+fn numbers(values: &[f64]) -> Vec<Complex64> {
+    values.iter().map(|&v| v.into()).collect()
+}
+
+/// Regular ends to six decimals, sorted.
+fn ends(paths: &PathSet) -> Vec<Vec<i64>> {
+    let rounded = |z: &Complex64| [(z.re * 1e6).round() as i64, (z.im * 1e6).round() as i64];
+    let regular = paths.iter().filter(|(result, _)| result.end == PathEnd::Success);
+    let mut all: Vec<Vec<i64>> = regular.map(|(_, x)| x.iter().flat_map(rounded).collect()).collect();
+    all.sort();
+    all
+}
+
+/// Fifteen of sixty paths are tracked to random targets; their images are where the others end.
+#[test]
+fn a_generated_solver_tracks_one_path_for_each_orbit() {
+    let (fibre, system, options) = (generated::fibre(), generated::System, FibreOptions::default());
+    assert_eq!(fibre.len(), 60);
+    let mut plain = FibreTracker::new(&system, OneChart, &fibre);
+    let mut stating = FibreTracker::new(&system, OneChart, &fibre).stating(generated::stated());
+    let mut random = Random::new(0, 71);
+    for _ in 0..20 {
+        let target = random.normals(8);
+        let (all, counts) = (plain.track(&fibre, &target, &options), stating.track(&fibre, &target, &options));
+        assert_eq!((all.finite, counts.tracked, counts.finite, counts.failed), (60, 60, 60, 0));
+        assert!(stating.paths().results().iter().enumerate().all(|(k, result)| result.path == k));
+        assert_eq!(stating.paths().results().iter().filter(|result| result.jacobians > 0).count(), 15);
+        assert_eq!(ends(stating.paths()), ends(plain.paths()));
+    }
+}
+
+/// The family tells its tracker the same as the module.
+#[test]
+fn an_interpreted_family_tracks_the_same_paths() {
+    let family: Family = include_str!("signs.toml").parse().unwrap();
+    let (fibre, options) = (generated::fibre(), FibreOptions::default());
+    let target = Random::new(1, 71).normals(8);
+    let mut interpreted = FibreTracker::new(family.program(), OneChart, &fibre).stating(family.stated());
+    let mut generated = FibreTracker::new(&generated::System, OneChart, &fibre).stating(generated::stated());
+    let counts = interpreted.track(&fibre, &target, &options);
+    assert_eq!(counts, generated.track(&fibre, &target, &options));
+    assert_eq!(interpreted.paths(), generated.paths());
+}
+
+fn tracked(family: &Family, fibre: &Fibre, target: &[f64]) -> (PathCounts, PathSet) {
+    let mut tracker = FibreTracker::new(family.program(), OneChart, fibre).stating(family.stated());
+    let counts = tracker.track(fibre, &numbers(target), &FibreOptions::default());
+    (counts, tracker.paths().clone())
+}
+
+/// Where images meet, or lie at infinity, all paths tell where they end.
+#[test]
+fn orbits_that_are_smaller_at_a_target_are_tracked_whole() {
+    let text = "name = ''\nunknowns = ['x', 'y']\nparameters = ['p', 'q', 'r']\nequations = ['r*x^2 - p', 'y^2 - q']\n\
+                symmetry = [['-x', 'y'], ['x', '-y']]";
+    let family: Family = text.parse().unwrap();
+    let fibre = family.monodromy(&MonodromyOptions::new()).unwrap().fibre;
+    let (counts, paths) = tracked(&family, &fibre, &[4.0, 9.0, 1.0]);
+    assert_eq!((counts.tracked, counts.finite, counts.retracked), (4, 4, 0));
+    assert!((0..4).all(|k| paths.is_real(k)) && paths.results().iter().filter(|r| r.jacobians > 0).count() == 1);
+    let (counts, paths) = tracked(&family, &fibre, &[0.0, 9.0, 1.0]);
+    assert_eq!((counts.tracked, counts.finite), (4, 0));
+    assert!(counts.retracked > 0 && paths.results().iter().all(|r| r.jacobians > 0));
+    let (counts, paths) = tracked(&family, &fibre, &[-4.0, 9.0, 1.0]);
+    assert!(counts.finite == 4 && (0..4).all(|k| !paths.is_real(k)));
+    // A fibre that does not have all images is tracked as it is.
+    let part = Fibre::new(fibre.parameters.clone(), 2, fibre.solutions[..6].to_vec());
+    let (counts, paths) = tracked(&family, &part, &[4.0, 9.0, 1.0]);
+    assert_eq!((counts.finite, paths.results().iter().filter(|r| r.jacobians > 0).count()), (3, 3));
+}
+
+/// Of the roots `a` and `b` one is 1, where the factor vanishes.
+#[test]
+fn ends_at_which_a_factor_vanishes_have_failed() {
+    let text =
+        "name = ''\nunknowns = ['x']\nparameters = ['a', 'b']\nequations = ['(x - a)*(x - b)']\nnonzero = ['x - 1']";
+    let family: Family = text.parse().unwrap();
+    let fibre = Fibre::new(numbers(&[2.0, 3.0]), 1, numbers(&[2.0, 3.0]));
+    let (counts, paths) = tracked(&family, &fibre, &[1.0, 5.0]);
+    assert_eq!((counts.tracked, counts.finite, counts.failed), (2, 1, 1));
+    assert_eq!([0, 1].map(|k| paths.results()[k].end), [PathEnd::Degenerate, PathEnd::Success]);
+    assert!(!paths.is_real(0) && paths.is_real(1));
+}
+
+/// Each factor is measured by its own derivatives, however large those of another are.
+#[test]
+fn a_steep_factor_does_not_hide_solutions_from_another() {
+    let text = "name = ''\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x^2 - a', 'y^2 - b']\n\
+                nonzero = ['y - 1', '1e14*x']";
+    let family: Family = text.parse().unwrap();
+    let fibre = family.monodromy(&MonodromyOptions::new()).unwrap().fibre;
+    let found = &family.track(&fibre, &[[1.0, 4.0]]).run().unwrap()[0];
+    assert_eq!((found.len(), found.paths.failed), (4, 0));
+    assert_eq!(tracked(&family, &fibre, &[1.0, 4.0]).0.finite, 4);
+}
