@@ -20,14 +20,17 @@ pub struct Stated<'a> {
     orbits: Option<Orbits<'a>>,
 }
 
+/// Whether a factor vanishes at a solution, by the parameters and its coordinates.
+type Vanishes<'a> = dyn FnMut(&[Complex64], &[Complex64]) -> bool + 'a;
+
 /// Factors that must not vanish.
 trait Factors: Send + Sync {
-    /// Whether one vanishes at a solution, by the parameters and its coordinates, with memory of its own.
-    fn vanish(&self) -> Box<dyn FnMut(&[Complex64], &[Complex64]) -> bool + '_>;
+    /// Tells whether one vanishes, with memory of its own.
+    fn vanish(&self) -> Box<Vanishes<'_>>;
 }
 
 impl<N: Evaluate> Factors for N {
-    fn vanish(&self) -> Box<dyn FnMut(&[Complex64], &[Complex64]) -> bool + '_> {
+    fn vanish(&self) -> Box<Vanishes<'_>> {
         let mut vanishing = Vanishing::new(self);
         Box::new(move |p, x| vanishing.at(p, x))
     }
