@@ -48,6 +48,7 @@ const SECTIONS: &[Section] = &[
     ("recordings", "In space: recordings, as they are, damaged and in parts", space::recordings),
     ("reduced", "In space: recordings reduced to the smallest sizes", space::reduced),
     ("dimension", "Plane or space", space::dimension),
+    ("kinds", "Networks as rooms, arrays and equipment have them", space::kinds),
 ];
 
 fn calibration(results: &Path) -> Result<String> {

@@ -16,6 +16,9 @@ use tdoa::{
 /// this many times farther than least squares that starts at the truth and has no other errors than noise.
 const WRONG: (f64, f64) = (0.02, 3.0);
 
+/// Mirror images of which all choices are looked at, at most.
+const MOST_SIDES: usize = 12;
+
 /// A kind of network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -241,7 +244,8 @@ pub struct Outcome {
     pub unique: bool,
     /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres.
     pub error: Option<f64>,
-    /// The least such distance of the network and the alternatives that are listed beside it, metres.
+    /// The least such distance of the network, whichever sides its mirror images take, and of the alternatives that are
+    /// listed beside it, metres.
     pub nearest: Option<f64>,
     /// Likewise of least squares that starts at the true receivers and has measurements with noise alone, in the plane
     /// where all nodes lie in one, metres; `None` if it finds no network.
@@ -258,7 +262,7 @@ impl Outcome {
         self.error.is_some_and(|error| error > self.near())
     }
 
-    /// Whether the receivers are elsewhere than the network and all its alternatives have them.
+    /// Whether the receivers are elsewhere than the network, its mirror images and all alternatives have them.
     pub fn is_unlisted(&self) -> bool {
         self.nearest.is_some_and(|error| error > self.near())
     }
@@ -302,13 +306,23 @@ impl Outcome {
             let raised = |p: &[f64; D]| from_fn(|axis| p.get(axis).copied().unwrap_or(0.0));
             apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), known)
         };
-        let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
+        let others = found.alternatives.iter().filter_map(|other| off(&other.receivers));
+        let images = found.mirror_images.iter().filter_map(|image| {
+            Some((found.receiver_names.iter().position(|name| *name == image.node)?, image.position))
+        });
+        let images: Vec<(usize, [f64; D])> = images.take(MOST_SIDES).collect();
+        let on_sides = (0..1usize << images.len()).filter_map(|sides| {
+            let mut receivers = found.receivers.clone();
+            let chosen = images.iter().enumerate().filter(|(k, _)| sides >> k & 1 == 1);
+            chosen.for_each(|(_, (i, position))| receivers[*i] = Some(*position));
+            off(&receivers)
+        });
         Outcome {
             dimensions: D,
             trusted: found.distrust().is_none(),
             unique: found.unique,
             error: off(&found.receivers),
-            nearest: all.filter_map(|receivers| off(receivers)).reduce(f64::min),
+            nearest: others.chain(on_sides).reduce(f64::min),
             covered: coverage(found, found.trusted_covariances()[0], seen),
             ..self
         }

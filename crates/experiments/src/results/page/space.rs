@@ -299,3 +299,48 @@ pub(super) fn dimension(results: &Path) -> Result<String> {
     };
     Ok(text + &lines(results, &["dimension", "low"], kind)?)
 }
+
+/// Networks of whose model nothing is said.
+pub(super) fn kinds(results: &Path) -> Result<String> {
+    let mut text = String::from(
+        "Networks of whose model nothing is said (default options). Wrong are receivers farther from the truth than 2 % of the network's size and \
+         three times what least squares from the truth has, in the plane where all nodes lie in one. Trusted is exit status 0. Not listed: neither \
+         the network, nor one with other sides of its mirror images, nor an alternative beside it is right. Of a source that flies straight nothing \
+         is right: receivers may be turned about its line.\n\n",
+    );
+    text += &head(&[
+        "",
+        "networks",
+        "in the plane",
+        "in space",
+        "trusted",
+        "unique",
+        "wrong and unique",
+        "wrong and trusted",
+        "not listed and trusted",
+        "error, m (median)",
+        "from the truth",
+        "error over that where trusted",
+        "95 % ellipses that hold",
+    ]);
+    let columns = [
+        "kind",
+        "networks",
+        "in_the_plane",
+        "in_space",
+        "trusted",
+        "unique",
+        "wrong_and_unique",
+        "wrong_and_trusted",
+        "unlisted_and_trusted",
+        "error_median",
+        "oracle_median",
+        "error_over_oracle_where_trusted",
+    ];
+    let kind = |row: &Row<'_>| {
+        let mut all = cells(row, &columns)?;
+        all.push(row.percent("ellipses_that_hold")?);
+        Ok(all)
+    };
+    Ok(text + &lines(results, &["kinds"], kind)?)
+}
