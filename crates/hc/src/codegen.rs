@@ -79,7 +79,7 @@ pub enum CodegenError {
 
 /// Writes a family and its solutions for a generic parameter point as a Rust module.
 ///
-/// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a
+/// The module has a unit struct `System` that implements [`Evaluate`], and a
 /// function `fibre()` that returns the stored solutions as a [`Fibre`]. The function `stated()` has what the family states
 /// besides its equations, factors that do not vanish and symmetries, as a [`Stated`](crate::family::Stated). The header
 /// names the `source`. Only the arguments determine the bytes.
