@@ -53,6 +53,8 @@ pub(crate) struct Judged<'s, const D: usize> {
     pub(crate) as_given: bool,
     /// Whether the measurements fit a network in the plane, or in space.
     pub(crate) fits: bool,
+    /// Whether they do not for too many outliers, in a network of which the search is not sure.
+    pub(crate) overrun: bool,
     /// Whether the rows of the table seem to be transmitters.
     pub(crate) transposed: bool,
     /// Receivers that have no place, since their inliers may agree by chance.
@@ -220,6 +222,7 @@ impl<const D: usize> State<'_, D> {
             uncertainty,
             as_given,
             fits: !beyond && !overrun,
+            overrun,
             transposed,
             doubtful,
             weak,

@@ -78,7 +78,15 @@ impl<const D: usize> State<'_, D> {
                 if D == 2 { "the network is not planar, or " } else { "" }
             ));
         }
-        if !judged.fits {
+        if judged.overrun {
+            let all = self.observations.len();
+            warnings.push(format!(
+                "the measurements do not fit a network {}: {} of {all} are outliers, and fewer starts of the search agree than it takes to be sure \
+                 of that; at most about a third of the measurements may be wrong",
+                space(D),
+                all - judged.kept.len()
+            ));
+        } else if !judged.fits {
             let misfit = self.metre() * judged.estimated * typical_deviation(&self.measured);
             let size = self.metre() * self.ranked[0].network.size();
             warnings.push(format!(
