@@ -368,6 +368,12 @@ mod tests {
     }
 
     #[test]
+    fn a_straight_flight_is_not_trusted() {
+        // Receivers may be turned about its line.
+        assert!(!outcome(&Kind::StraightFlight.network(3).unwrap()).trusted);
+    }
+
+    #[test]
     fn an_outcome_counts_what_is_wrong() {
         let found = Outcome { dimensions: 2, size: 5.0, error: Some(0.2), oracle: Some(0.03), ..Outcome::default() };
         assert!(found.is_wrong());

@@ -147,9 +147,9 @@ impl Unfolding {
 }
 
 impl Orbits<'_> {
-    /// The solutions that are tracked; nothing before a fibre is known.
-    pub(super) fn tracked(&self) -> Fibre {
-        self.unfolding.as_ref().map(|known| known.tracked.clone()).unwrap_or_default()
+    /// The solutions that are tracked; `None` before a fibre is known.
+    pub(super) fn tracked(&self) -> Option<&Fibre> {
+        self.unfolding.as_ref().map(|known| &known.tracked)
     }
 
     /// All paths from those of the tracked solutions. False, with the paths as they were, if images meet or are not

@@ -173,9 +173,10 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     ) -> PathCounts {
         let mut unfolded = None;
         let mut before = 0;
-        if let Some(orbits) = stated.orbits(fibre) {
-            let tracked = orbits.tracked();
-            let counts = self.track_until(&tracked, target, options, tracked.len(), |_| false).0;
+        if let Some(orbits) = stated.orbits(fibre)
+            && let Some(tracked) = orbits.tracked()
+        {
+            let counts = self.track_until(tracked, target, options, tracked.len(), |_| false).0;
             if counts.failed == 0 && orbits.unfold(target, &mut self.paths, options.coincidence) {
                 unfolded = Some(PathCounts { retracked: counts.retracked, ..self.counts(0) });
             }

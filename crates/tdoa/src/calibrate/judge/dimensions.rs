@@ -3,7 +3,7 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
-use crate::calibrate::judge::errors_chosen::{Fit, with_errors_chosen};
+use crate::calibrate::judge::errors_chosen::{Decided, Verdict, with_errors_chosen};
 use crate::calibrate::judge::excluded::plane_is_excluded;
 use crate::calibrate::judge::explained::explained_by_errors;
 use crate::calibrate::judge::known_heights::{KnownHeights, in_plane};
@@ -42,32 +42,18 @@ pub enum Calibrated {
     Space(Calibration<3>),
 }
 
-impl Calibrated {
-    fn as_fit(&self) -> &dyn Fit {
+impl Decided for Calibrated {
+    fn verdict(&self) -> Verdict {
         match self {
-            Calibrated::Plane(found) => found,
-            Calibrated::Space(found) => found,
+            Calibrated::Plane(found) => found.verdict(),
+            Calibrated::Space(found) => found.verdict(),
         }
     }
-}
 
-impl Fit for Calibrated {
-    fn fits(&self) -> bool {
-        self.as_fit().fits()
-    }
-
-    fn is_trusted(&self) -> bool {
-        self.as_fit().is_trusted()
-    }
-
-    fn estimated_deviation(&self) -> Option<f64> {
-        self.as_fit().estimated_deviation()
-    }
-
-    fn warn(&mut self, warning: String) {
+    fn warnings(&mut self) -> &mut Vec<String> {
         match self {
-            Calibrated::Plane(found) => found.warn(warning),
-            Calibrated::Space(found) => found.warn(warning),
+            Calibrated::Plane(found) => &mut found.warnings,
+            Calibrated::Space(found) => &mut found.warnings,
         }
     }
 }

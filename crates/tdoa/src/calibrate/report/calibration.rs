@@ -102,7 +102,8 @@ pub struct Calibration<const D: usize = 2> {
     /// alternatives. None in the plane.
     #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
     pub mirror_images: Vec<MirrorImage<D>>,
-    /// Whether the measurements fit a network of these dimensions.
+    /// Whether the measurements fit a network of these dimensions. This is false, too, where more than a third of them are
+    /// outliers and fewer than three starts of the search ended in the network.
     #[serde(default = "agree")]
     pub fits: bool,
     /// Whether the measurements fit a network in the plane; false in space, where that is not asked.
@@ -121,7 +122,8 @@ pub struct Calibration<const D: usize = 2> {
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
     /// with receivers as columns. It is false, too, where receivers or transmitters lie in one line of
-    /// space, about which the others may turn.
+    /// space, about which the others may turn, and where fewer than three starts of the search ended in the network and
+    /// more other ones, a tenth of its size away, explain the measurements about as well.
     pub determined: bool,
     /// Whether the known positions agree with the measurements, to the same share of the network's
     /// size to which the measurements have to agree with a plane; true if no positions are known.
