@@ -1,18 +1,22 @@
-//! The eliminant of two polynomials in two unknowns, over integers or modulo a prime.
+//! The eliminant of two polynomials in two unknowns, over Gaussian integers or modulo a prime.
 //!
 //! In coordinates `u = x + t y` and `y`, the resultant with respect to `y` is a polynomial in `u`. Its
 //! roots are the `u` of all common roots, with the same multiplicities (van der Waerden, Modern
 //! Algebra, section 83). It is interpolated: the resultant on each of as many lines `u = 0, 1, 2 ...`
 //! as its degree needs.
 
+use super::subresultants::{self, Gaussian};
 use crate::singular::{Residue, resultant, trimmed};
 use num_bigint::BigInt;
-use num_traits::{One, Zero, pow};
+use num_traits::{One, Zero};
 use poly::{Exact, Polynomial};
 use std::ops::Sub;
 
 /// Coefficients whose resultants are computed without rounding.
-pub(super) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
+pub(super) trait Domain: Clone + Zero + One + Sub<Output = Self> {
+    /// A whole number.
+    fn whole(number: u32) -> Self;
+
     /// The resultant of two polynomials by ascending powers, their last coefficients not zero.
     fn resultant(a: Vec<Self>, b: Vec<Self>) -> Self;
 }
@@ -43,7 +47,7 @@ impl<T: Domain> Eliminant<T> {
         let (d, e) = (degree(&f), degree(&g));
         let roots = d.checked_mul(e).filter(|roots| (1..=most).contains(roots))?;
         let value = |u: u32| {
-            let [f, g] = [(&f, d), (&g, e)].map(|(terms, degree)| on_line(terms, degree, &T::from(u), t));
+            let [f, g] = [(&f, d), (&g, e)].map(|(terms, degree)| on_line(terms, degree, &T::whole(u), t));
             Some(T::resultant(f?, g?))
         };
         interpolated((0..=u32::try_from(roots).ok()?).map(value).collect::<Option<_>>()?)
@@ -101,11 +105,11 @@ fn interpolated<T: Domain>(mut values: Vec<T>) -> Option<Eliminant<T>> {
         // whole * (u - k) + value
         whole.insert(0, T::zero());
         for j in 1..whole.len() {
-            whole[j - 1] = whole[j - 1].clone() - T::from(k) * whole[j].clone();
+            whole[j - 1] = whole[j - 1].clone() - T::whole(k) * whole[j].clone();
         }
         whole[0] = whole[0].clone() + value * factor.clone();
         if k > 0 {
-            factor = factor * T::from(k);
+            factor = factor * T::whole(k);
         }
     }
     let coefficients = trimmed(whole);
@@ -113,85 +117,21 @@ fn interpolated<T: Domain>(mut values: Vec<T>) -> Option<Eliminant<T>> {
 }
 
 impl Domain for Residue {
+    fn whole(number: u32) -> Residue {
+        Residue::from(number)
+    }
+
     fn resultant(a: Vec<Residue>, b: Vec<Residue>) -> Residue {
         resultant(a, b)
     }
 }
 
-impl Domain for BigInt {
-    /// By subresultants (Cohen 1993, A Course in Computational Algebraic Number Theory, algorithm
-    /// 3.3.7), which stay integers.
-    fn resultant(mut a: Vec<BigInt>, mut b: Vec<BigInt>) -> BigInt {
-        let mut sign = BigInt::one();
-        if a.len() < b.len() {
-            if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
-                sign = -sign;
-            }
-            std::mem::swap(&mut a, &mut b);
-        }
-        let (mut g, mut h) = (BigInt::one(), BigInt::one());
-        while b.len() > 1 {
-            let steps = a.len() - b.len();
-            if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
-                sign = -sign;
-            }
-            let divisor = &g * pow(h.clone(), steps);
-            let rest = remainder(a, &b).into_iter().map(|c| c / &divisor).collect();
-            a = std::mem::replace(&mut b, rest);
-            g = a.last().cloned().unwrap_or_default();
-            if steps > 0 {
-                h = pow(g.clone(), steps) / pow(h, steps - 1);
-            }
-        }
-        let Some(last) = b.last() else { return BigInt::zero() };
-        match a.len() - 1 {
-            0 => sign,
-            degree => sign * pow(last.clone(), degree) / pow(h, degree - 1),
-        }
+impl Domain for Gaussian {
+    fn whole(number: u32) -> Gaussian {
+        BigInt::from(number).into()
     }
-}
 
-/// The remainder of `a`, times the leading coefficient of `b` to the power of one more than their
-/// degrees differ.
-fn remainder(mut a: Vec<BigInt>, b: &[BigInt]) -> Vec<BigInt> {
-    let Some(leading) = b.last() else { return a };
-    while a.len() >= b.len() {
-        let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
-        for c in &mut a {
-            *c *= leading;
-        }
-        for (c, d) in a[place..].iter_mut().zip(b) {
-            *c -= &last * d;
-        }
-    }
-    trimmed(a)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Domain;
-    use num_bigint::BigInt;
-    use proptest::prelude::{prop, prop_assert_eq, proptest};
-
-    proptest! {
-        /// The product of the differences of all roots.
-        #[test]
-        fn resultants_are_those_of_the_roots(
-            a in prop::collection::vec(-9i64..9, 0..5),
-            b in prop::collection::vec(-9i64..9, 0..5),
-            leading in (1i64..5, 1i64..5),
-        ) {
-            let with = |leading: i64, roots: &[i64]| roots.iter().fold(vec![BigInt::from(leading)], |p, &root| {
-                let below = p.iter().map(|c| -c * root).chain([BigInt::ZERO]);
-                below.zip(std::iter::once(BigInt::ZERO).chain(p.clone())).map(|(a, b)| a + b).collect()
-            });
-            let mut want = BigInt::from(leading.0).pow(b.len() as u32) * BigInt::from(leading.1).pow(a.len() as u32);
-            for x in &a {
-                for y in &b {
-                    want *= x - y;
-                }
-            }
-            prop_assert_eq!(BigInt::resultant(with(leading.0, &a), with(leading.1, &b)), want);
-        }
+    fn resultant(a: Vec<Gaussian>, b: Vec<Gaussian>) -> Gaussian {
+        subresultants::resultant(&a, &b)
     }
 }

@@ -9,6 +9,7 @@ mod plane;
 mod roots;
 mod simple;
 mod squarefree;
+mod subresultants;
 mod system;
 
 pub(crate) use roots::{Digits, number_of_roots};

@@ -6,6 +6,7 @@
 
 use super::eliminant::Eliminant;
 use super::roots::{Digits, roots_with_multiplicities};
+use super::subresultants::Gaussian;
 use crate::tolerances::structure;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -30,10 +31,11 @@ pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digit
     CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes))
 }
 
-/// A polynomial times a common denominator of the real parts of its coefficients.
+/// A polynomial times a common denominator of its coefficients.
 fn without_denominators(polynomial: &Polynomial<Exact>) -> Polynomial<Exact> {
-    let denominator = polynomial.terms().iter().fold(BigInt::one(), |product, (_, c)| {
-        let next = BigRational::new(product.clone(), c.re.denom().clone());
+    let denominators = polynomial.terms().iter().flat_map(|(_, c)| [c.re.denom(), c.im.denom()]);
+    let denominator = denominators.fold(BigInt::one(), |product, denominator| {
+        let next = BigRational::new(product.clone(), denominator.clone());
         product * next.denom()
     });
     polynomial.scaled(&Exact { re: denominator.into(), im: BigRational::zero() })
@@ -92,9 +94,12 @@ fn left(polynomials: &[Polynomial<Exact>], point: &[Digits]) -> f64 {
 /// The eliminant of the equations after the change of coordinates `x = u - t y`; `None` where it is
 /// zero or too large, or the change of coordinates is not a general one.
 fn eliminated(equations: &[Polynomial<Exact>], t: i32) -> Option<Polynomial<Exact>> {
-    let integer = |c: &Exact| (c.im.is_zero() && c.re.is_integer()).then(|| c.re.to_integer());
-    let Eliminant { coefficients, factor } = Eliminant::new(equations, &BigInt::from(t), PATHS, integer)?;
-    let exact = |c: BigInt| Exact { re: BigRational::new(c, factor.clone()), im: BigRational::zero() };
+    let is_whole = |c: &Exact| c.re.is_integer() && c.im.is_integer();
+    let whole = |c: &Exact| is_whole(c).then(|| Gaussian::new(c.re.to_integer(), c.im.to_integer()));
+    let Eliminant { coefficients, factor } = Eliminant::new(equations, &BigInt::from(t).into(), PATHS, whole)?;
+    // The factor is real.
+    let exact =
+        |c: Gaussian| Exact::new(BigRational::new(c.re, factor.re.clone()), BigRational::new(c.im, factor.re.clone()));
     let terms = (0..).zip(coefficients).map(|(exponent, c)| (Monomial::new([exponent]), exact(c)));
     Some(Polynomial::from_terms(1, terms))
 }
@@ -122,7 +127,10 @@ mod tests {
         let sixfold = found(&format!("2\n{curve};\n(3*x-4*y+4)^6+{curve}*(x+2*y-3);")).unwrap();
         assert_eq!(sixfold, [(0.0, 1.0, 6)]);
         assert_eq!(found("2\nx*y;\nx*(y-1);"), None);
-        assert_eq!(found("2\nx*i-1;\ny;"), None);
+        assert_eq!(found("2\nx*i-1;\ny;").unwrap(), [(0.0, 0.0, 1)]);
+        // x^2 = 2 i, y = i x: 1 + i, i - 1, and their opposites, where the curves touch.
+        let touching = "2\n(y-i*x)^2;\nx^2+(2-i)*(y-i*x)-2*i;";
+        assert_eq!(found(touching).unwrap(), [(-1.0, 1.0, 2), (1.0, -1.0, 2)]);
     }
 
     #[test]

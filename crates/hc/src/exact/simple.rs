@@ -45,9 +45,9 @@ fn eliminant(polynomials: &[Polynomial<Exact>]) -> Option<Eliminant<Residue>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Eliminant, Residue, all_simple, finite_solutions};
+    use super::super::subresultants::Gaussian;
+    use super::{Eliminant, Exact, Residue, all_simple, finite_solutions};
     use num_bigint::BigInt;
-    use num_complex::Complex;
     use poly::parse::phcpack;
 
     #[test]
@@ -66,9 +66,10 @@ mod tests {
     fn eliminants_modulo_the_prime_are_images_of_those_over_integers() {
         for text in ["2\nx^2*y-3*x+7;\ny^3-x*y+2;", "2\n(x-2*y)^2*(x+1);\nx*y-5;", "2\nx+y-1;\nx+y-2;"] {
             let polynomials = phcpack(text).unwrap().expand(&Default::default()).unwrap();
-            let integers = Eliminant::new(&polynomials, &BigInt::from(3), 9, |c| Some(c.re.to_integer())).unwrap();
+            let whole = |c: &Exact| Some(Gaussian::new(c.re.to_integer(), c.im.to_integer()));
+            let integers = Eliminant::new(&polynomials, &BigInt::from(3).into(), 9, whole).unwrap();
             let residues = Eliminant::new(&polynomials, &Residue::new(3), 9, Residue::image).unwrap();
-            let image = |n: &BigInt| Residue::image(&Complex::new(n.clone().into(), BigInt::ZERO.into())).unwrap();
+            let image = |n: &Gaussian| Residue::image(&Exact::new(n.re.clone().into(), n.im.clone().into())).unwrap();
             assert_eq!(integers.coefficients.iter().map(image).collect::<Vec<_>>(), residues.coefficients);
             assert_eq!(image(&integers.factor), residues.factor);
         }

@@ -4,6 +4,7 @@
 //! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
 //! exact polynomials.
 
+use super::subresultants::{self, Gaussian};
 use crate::singular::{self, Residue, trimmed};
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -55,12 +56,12 @@ fn sparse(coefficients: &[Exact]) -> Polynomial<Exact> {
 /// Yun's factors with their exponents, constants left out.
 fn yun(whole: &[Exact]) -> Vec<(Vec<Exact>, usize)> {
     let slope = derivative(whole);
-    let common = divisor(whole.to_vec(), slope.clone());
+    let common = divisor(whole, &slope);
     let (mut rest, mut other) = (divided(whole, &common).0, divided(&slope, &common).0);
     let mut parts = Vec::new();
     for exponent in 1..whole.len() {
         let difference = minus(&other, &derivative(&rest));
-        let part = divisor(rest.clone(), difference.clone());
+        let part = divisor(&rest, &difference);
         (rest, other) = (divided(&rest, &part).0, divided(&difference, &part).0);
         if part.len() > 1 {
             parts.push((part, exponent));
@@ -101,12 +102,20 @@ fn divided(a: &[Exact], b: &[Exact]) -> (Vec<Exact>, Vec<Exact>) {
 }
 
 /// The monic greatest common divisor of two polynomials, not both zero.
-fn divisor(mut a: Vec<Exact>, mut b: Vec<Exact>) -> Vec<Exact> {
-    while !b.is_empty() {
-        let rest = divided(&a, &b).1;
-        (a, b) = (b, monic(rest));
-    }
-    monic(a)
+fn divisor(a: &[Exact], b: &[Exact]) -> Vec<Exact> {
+    let common = subresultants::divisor(&whole_numbers(a), &whole_numbers(b));
+    monic(common.into_iter().map(|c| Exact::new(c.re.into(), c.im.into())).collect())
+}
+
+/// A polynomial times a common denominator of its coefficients.
+fn whole_numbers(a: &[Exact]) -> Vec<Gaussian> {
+    let denominators = a.iter().flat_map(|c| [c.re.denom(), c.im.denom()]);
+    let common = denominators.fold(BigInt::one(), |common, next| {
+        let missing = BigRational::new(common.clone(), next.clone());
+        common * missing.denom()
+    });
+    let whole = |q: &BigRational| q.numer() * (&common / q.denom());
+    a.iter().map(|c| Gaussian::new(whole(&c.re), whole(&c.im))).collect()
 }
 
 fn monic(a: Vec<Exact>) -> Vec<Exact> {
@@ -145,5 +154,7 @@ mod tests {
         let found = parts("x^4*(x^2+1)^2*(x-i)");
         assert_eq!(found.iter().map(|(_, k)| *k).collect::<Vec<_>>(), [2, 3, 4], "{found:?}");
         assert_eq!(parts("(x-2)^7"), [("x - 2".to_owned(), 7)]);
+        let found = parts("(x-2/3+i/7)^3*(x^2+5*i*x-1/9)^2*(x^3-x+i)");
+        assert_eq!(found.iter().map(|(_, k)| *k).collect::<Vec<_>>(), [1, 2, 3], "{found:?}");
     }
 }

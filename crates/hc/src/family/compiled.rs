@@ -147,7 +147,8 @@ impl Family {
     }
 
     /// A first solution, for some generic parameters; if one is found that parameters move, such a
-    /// solution. The same seed gives the same solution.
+    /// solution. The same seed gives the same solution. Where Newton's method leads to none, as where it is drawn to
+    /// multiple solutions, a start system for random parameters is solved if that takes few paths.
     ///
     /// # Errors
     /// If no regular solution is found that the family accepts, or only solutions for special parameters.
@@ -156,11 +157,13 @@ impl Family {
         let moves = |p: &[Complex64], x: &[Complex64]| !Still::new(&self.program, p).is(x);
         let (mut still, mut special) = (None, None);
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
-        for attempt in 0..TRIES {
+        let tried = (0..TRIES).map(|attempt| (attempt, pairs.from(seed, attempt, &Beginning::default(), accept)));
+        let of_member = std::iter::once_with(|| self.pairs_of_member(&pairs, seed)).flatten();
+        for (attempt, pair) in tried.chain(of_member.map(|pair| (TRIES, Some(pair)))) {
             if (still.is_some() || special.is_some()) && attempt >= MOVING_TRIES {
                 break;
             }
-            let Some(pair) = pairs.from(seed, attempt, &Beginning::default(), accept) else { continue };
+            let Some(pair) = pair else { continue };
             if let Err(error) = self.check_generic(&pair) {
                 if matches!(error, FamilyError::Special { .. }) {
                     special.get_or_insert(error);

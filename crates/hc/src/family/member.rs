@@ -2,14 +2,17 @@
 //! orbits.
 
 use super::compiled::Family;
+use super::fibre::Fibre;
+use super::pair::{Pairs, TRIES};
 use super::search::Multiple;
 use crate::monitor::{Monitor, Stage};
+use crate::random::{Random, Stream};
 use crate::run::Run;
 use crate::solve::{Solution, SolveOptions};
 use crate::start::bezout_number;
 use crate::tolerances::families;
 use num_complex::Complex64;
-use poly::System;
+use poly::{Evaluate, System};
 use serde::{Deserialize, Serialize};
 
 /// So many paths are always worth it; never more than so many.
@@ -50,6 +53,15 @@ impl Family {
             return Some(found);
         }
         self.member_with(&system, parameters, &SolveOptions::new().max_paths(most).seed(seed), monitor)
+    }
+
+    /// First pairs that the member for random parameters gives, if it takes no more paths than are always worth it.
+    pub(super) fn pairs_of_member(&self, pairs: &Pairs, seed: u64) -> Vec<Fibre> {
+        let parameters = Random::of(seed, Stream::Member(TRIES)).normals(self.program.parameters());
+        let member = self.member(&parameters, FEW, seed, &Monitor::default());
+        let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
+        let solutions = member.iter().flat_map(|member| &member.regular);
+        solutions.filter_map(|x| pairs.at(&parameters, x, accept)).collect()
     }
 
     /// The member solved with these options.

@@ -265,15 +265,18 @@ impl<'a, E: Evaluate> Filling<'a, E> {
         (solutions, [gone, groups.iter().map(|group| numbers[group[0]]).collect()])
     }
 
-    /// Adds points that are refined to solutions that are wanted and not known yet, each with the
-    /// solution from which a loop leads to it.
+    /// Adds points that are refined to regular solutions that are wanted and not known yet, each with the
+    /// solution from which a loop leads to it. A path that has jumped may end on a component of positive dimension.
     fn add_accepted<'x>(&mut self, points: impl Iterator<Item = (Option<usize>, &'x [Complex64])>) {
         let LoopSearch { searched, accept, .. } = self.search;
         let mut refiner = Refiner::new(searched.system);
         let mut new = Vec::new();
         for (from, x) in points {
-            let refined = refined(&mut refiner, &self.fibre.parameters, x);
-            if refined.accuracy < families::ACCURATE && accept(&self.fibre.parameters, &refined.point) {
+            let p = &self.fibre.parameters;
+            let refined = refined(&mut refiner, p, x);
+            let is_regular = refined.accuracy < families::ACCURATE
+                && (refiner.is_regular(p, &refined) || refiner.contracts_precisely(p, &refined.point));
+            if is_regular && accept(p, &refined.point) {
                 new.push((from, refined.point));
             }
         }

@@ -91,12 +91,21 @@ impl Pairs {
         if !gauss_newton(&self.free, &mut z, damping) {
             return None;
         }
-        let parameters = z[n..].to_vec();
+        self.at(&z[n..], &z[..n], accept)
+    }
+
+    /// The regular solution at this point for these parameters, if it is one that `accept` is content with.
+    pub(super) fn at(
+        &self,
+        parameters: &[Complex64],
+        x: &[Complex64],
+        accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
+    ) -> Option<Fibre> {
         let mut refiner = Refiner::new(&self.compiled);
-        let refined = refined(&mut refiner, &parameters, &z[..n]);
-        let regular = refined.accuracy < 1e-12 && refined.condition < 1e8 && refiner.is_regular(&parameters, &refined);
-        (regular && accept(&parameters, &refined.point))
-            .then(|| Fibre { is_partial: true, ..Fibre::new(parameters, n, refined.point) })
+        let refined = refined(&mut refiner, parameters, x);
+        let regular = refined.accuracy < 1e-12 && refined.condition < 1e8 && refiner.is_regular(parameters, &refined);
+        (regular && accept(parameters, &refined.point))
+            .then(|| Fibre { is_partial: true, ..Fibre::new(parameters.to_vec(), x.len(), refined.point) })
     }
 
     /// Regular solutions from other random points, some of them far out or near zero, and some with

@@ -137,6 +137,34 @@ fn orbits_that_are_not_excluded_are_said() {
     assert_eq!((known.fibre.len(), known.stopped), (3, Stopped::RootsReached));
 }
 
+/// Newton's method in unknowns and parameters is drawn to the double solutions, which a small change of `a` leads to.
+#[test]
+fn double_solutions_do_not_hide_the_others() {
+    let equations = "((x + 2*y) - 13*a - 10)^2*((x + 2*y)^2 + 19*b*(x + 2*y) - 23); y^3 - 20*(x + 2*y) - b + 4";
+    let Kind { family, .. } = kind("x y", "a b", equations, 6, &[2, 2, 2]);
+    for seed in 0..3 {
+        let found = search(&family, seed);
+        assert_eq!(
+            (found.fibre.len(), found.stopped, sorted(&found.multiple)),
+            (6, Stopped::Trace, vec![2, 2, 2]),
+            "{seed}"
+        );
+    }
+}
+
+/// A line that moves is a component; a line and a conic meet in two points besides.
+#[test]
+fn points_of_a_component_are_no_solutions() {
+    let line = "(9*a + 14*(x + 3*y) + 25*y + 1)";
+    let conic = "12*(x + 3*y)^2 - 8*(x + 3*y)*y - 12*y^2 + 12*(x + 3*y) - 16*y - 19";
+    let equations = format!("{line}*(12*(x + 3*y) - 13*y + 22*a - 25*b + 16); {line}*({conic})");
+    let Kind { family, .. } = kind("x y", "a b", &equations, 2, &[]);
+    for seed in [1, 4, 7] {
+        let found = search(&family, seed);
+        assert_eq!((found.fibre.len(), found.stopped), (2, Stopped::Trace), "{seed}");
+    }
+}
+
 /// From a first solution in each orbit.
 #[test]
 fn one_component_is_what_loops_join() {
