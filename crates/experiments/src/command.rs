@@ -10,6 +10,7 @@ mod conditions;
 mod crew;
 mod damaged;
 mod dimension;
+mod families;
 mod growth;
 mod hard;
 mod kinds;
@@ -61,12 +62,13 @@ enum Kind {
     Reduced(reduced::Arguments),
     Dimension(dimension::Arguments),
     Kinds(kinds::Arguments),
+    Families(families::Arguments),
 }
 
 impl Arguments {
     /// Which experiments several ranks can do.
-    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `kinds`, \
-                              `noise`, `reduced`, `routes` and `table2` run on several ranks";
+    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `families`, \
+                              `kinds`, `noise`, `reduced`, `routes` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
     pub fn sharing(&self) -> Option<&Sharing> {
@@ -85,7 +87,8 @@ impl Arguments {
             | Kind::Damaged(_)
             | Kind::Reduced(_)
             | Kind::Dimension(_)
-            | Kind::Kinds(_) => Some(&self.ranks),
+            | Kind::Kinds(_)
+            | Kind::Families(_) => Some(&self.ranks),
         }
     }
 }
@@ -114,5 +117,6 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Reduced(arguments) => reduced::run(arguments, ranks),
         Kind::Dimension(arguments) => dimension::run(arguments, ranks),
         Kind::Kinds(arguments) => kinds::run(arguments, ranks),
+        Kind::Families(arguments) => families::run(arguments, ranks),
     }
 }

@@ -188,6 +188,21 @@ fn rooms_in_space_and_the_choice_of_the_dimension() {
 }
 
 #[test]
+fn families_with_known_numbers_of_solutions() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("families --kind species,minors --instances 2 --searches 1", directory.path(), "2");
+    for row in &lines[1..] {
+        let of = |column: &str| cell(&lines[0], row, column);
+        assert_eq!((of("families"), of("right"), of("wrong")), ("2".into(), "2".into(), "0".into()), "{row}");
+    }
+    // Nothing is searched where another program is to count.
+    let folder = directory.path().join("singular");
+    experiment("families --kind component,minors --instances 1 --singular", &folder, "1");
+    let text = std::fs::read_to_string(folder.join("families.sing")).expect("written");
+    assert_eq!((text.matches("ideal I =").count(), folder.join("trials.csv").exists()), (4, false));
+}
+
+#[test]
 fn another_table_in_the_folder_is_left_alone() {
     let directory = tempfile::tempdir().expect("directory");
     std::fs::write(directory.path().join("trials.csv"), "a,b\n1,2\n").expect("written");
