@@ -57,10 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         family_file.file_name().unwrap_or_default().to_string_lossy()
     };
-    let module = codegen::generate(&family, &start, &source).map_err(|error| match error {
-        CodegenError::Overdetermined { .. } => Failure::in_file(family_file, error),
-        error => Failure::in_file(start_file, error),
-    })?;
+    let module = codegen::generate(&family, &start, &source).map_err(|error| Failure::in_file(start_file, error))?;
     if !check {
         return output::text(output, &module);
     }

@@ -26,19 +26,6 @@ pub enum CodegenError {
     /// The program cannot be written as Rust.
     #[error(transparent)]
     Emit(#[from] EmitError),
-    /// More equations than unknowns, of which a generated solver would track combinations only.
-    #[error(
-        "{} in {}; a generated solver tracks as many equations as unknowns and checks no others: leave equations out as \
-        long as those that stay have no further solutions, or track the family itself (Family::track, hc track)",
-        counted(*.equations, "equation"),
-        counted(*.unknowns, "unknown")
-    )]
-    Overdetermined {
-        /// Number of equations.
-        equations: usize,
-        /// Number of unknowns.
-        unknowns: usize,
-    },
     /// The number of solutions differs from the number that the family states.
     #[error("{}, but the family states {stated}; compute the start file anew or correct `roots`", counted(*.found, "solution"))]
     Count {
@@ -84,6 +71,9 @@ pub enum CodegenError {
 /// besides its equations, factors that do not vanish and symmetries, as a [`Stated`](crate::family::Stated). The header
 /// names the `source`. Only the arguments determine the bytes.
 ///
+/// If the family has more equations than unknowns, `System` are random combinations of them, as many as unknowns, and
+/// `stated()` has all equations: trackers that are told count ends that do not solve all of them as failed.
+///
 /// The stored solutions are checked first: they must solve the equations, be regular, distinct and
 /// not degenerate, and be as many as the family states.
 ///
@@ -97,12 +87,8 @@ pub enum CodegenError {
 /// ```
 ///
 /// # Errors
-/// If the stored solutions fail a check, or the family has more equations than unknowns.
+/// If the stored solutions fail a check.
 pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String, CodegenError> {
-    let (equations, unknowns) = (family.system().len(), family.system().variables().len());
-    if equations > unknowns {
-        return Err(CodegenError::Overdetermined { equations, unknowns });
-    }
     let fibre = family.stored(start)?;
     verify(family, &fibre)?;
     let mut options = EmitOptions::default();
@@ -114,6 +100,11 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     let factors = Some(family.factors()).filter(|factors| factors.equations() > 0);
     let mut stated = String::new();
     for (name, doc, program) in [
+        (
+            "equations",
+            "All equations. [`System`] are combinations of them, as many as unknowns, which have further solutions.",
+            family.all_equations(),
+        ),
         ("nonzero", "Factors that do not vanish at a solution, one an equation.", factors),
         ("symmetry", "Images of a solution that are solutions, the coordinates of all as equations.", family.maps()),
     ] {
@@ -238,6 +229,17 @@ mod tests {
             text.contains("// Source: two roots\n") && text.contains("Search ended: by hand }; trace test: not run.")
         );
         assert!(text.contains("static SOLUTIONS: [[f64; 2]; 2] = [\n    [1.0, 0.0],\n    [2.0, 0.0],\n];"));
+    }
+
+    /// The only solution of both equations is `x = a`; a combination of them has one more.
+    #[test]
+    fn more_equations_than_unknowns_are_a_module_of_their_own() {
+        let family = Family::from_formulas(&["x"], &["a", "b"], &["x^2 - a^2", "(x - a)*(x + b)"]).unwrap();
+        let text = generate(&family, &start([1.0, 2.0], &[1.0]), "two equations").unwrap();
+        for part in ["pub mod equations {", "2 equations, 1 unknowns", ".equations(&equations::System)"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        assert!(matches!(generate(&family, &start([1.0, 2.0], &[3.0]), ""), Err(CodegenError::Inaccurate { .. })));
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::overdetermined::{Overdetermined, Verdict};
+use super::overdetermined::Overdetermined;
 use super::pair::{Beginning, MOVING_TRIES, Pairs, TRIES};
 use super::stated::{Stated, Vanishing};
 use super::still::{Still, refined};
 use super::symmetry::Symmetry;
+use super::verdict::Verdict;
 use crate::checkpoint::{self, Hash, Job};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
@@ -208,10 +209,20 @@ impl Family {
     /// [`FibreTracker`](crate::family::FibreTracker).
     pub fn stated(&self) -> Stated<'_> {
         let stated = Stated::default().nonzero(&self.nonzero);
+        let stated = match &self.overdetermined {
+            Some(more) => stated.equations(&more.all),
+            None => stated,
+        };
         match self.symmetry.program() {
             Some(maps) => stated.symmetry(maps),
             None => stated,
         }
+    }
+
+    /// All equations, if these are more than unknowns.
+    #[cfg(feature = "codegen")]
+    pub(crate) fn all_equations(&self) -> Option<&Interpreter> {
+        self.overdetermined.as_ref().map(|more| &more.all)
     }
 
     /// The factors that must not vanish, one an equation.

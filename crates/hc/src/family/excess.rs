@@ -4,9 +4,9 @@
 use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions};
-use super::overdetermined::Verdict;
 use super::reach::natural_size;
 use super::track::track_fibre;
+use super::verdict::Verdict;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
@@ -117,7 +117,7 @@ impl Family {
 
 #[cfg(test)]
 mod tests {
-    use crate::family::overdetermined::Verdict;
+    use crate::family::verdict::Verdict;
     use crate::family::{Family, FamilyError, Fibre};
     use crate::random::Random;
     use crate::{MonodromyOptions, SolveOptions, solve};

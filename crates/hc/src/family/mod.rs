@@ -34,6 +34,7 @@ mod targets;
 mod trace;
 mod track;
 mod tracking;
+mod verdict;
 
 pub use charts::{Charts, OneChart};
 pub use choice::{ChoiceOptions, easiest_fibre, real_sample};

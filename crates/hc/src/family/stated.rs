@@ -2,20 +2,23 @@
 
 use super::fibre::Fibre;
 use super::images::Images;
+use super::verdict::{Verdict, verdict};
 use crate::distinct::{Coincidences, Known};
+use crate::refine::Refiner;
 use crate::tolerances::{families, same};
 use crate::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
-use poly::{Evaluate, Isa};
+use poly::{ComplexDd, Evaluate, Isa};
 use std::collections::VecDeque;
 
-/// What a family states of its solutions besides its equations: factors that do not vanish at them, and symmetries.
-/// By default nothing.
+/// What a family states of its solutions besides the equations that are tracked: further equations, factors that do not
+/// vanish, and symmetries. By default nothing.
 ///
 /// [`Family::stated`](crate::Family::stated) and the function `stated()` of generated modules make one for
 /// [`FibreTracker::stating`](super::FibreTracker::stating).
 #[derive(Default)]
 pub struct Stated<'a> {
+    equations: Option<&'a dyn Equations>,
     factors: Option<&'a dyn Factors>,
     orbits: Option<Orbits<'a>>,
 }
@@ -36,6 +39,18 @@ impl<N: Evaluate> Factors for N {
     }
 }
 
+/// Equations that solutions solve.
+trait Equations: Send + Sync {
+    /// What they say of a point, by its digits in double-double, the parameters and its coordinates.
+    fn verdict(&self, precise: &[ComplexDd], p: &[Complex64], x: &[Complex64]) -> Verdict;
+}
+
+impl<A: Evaluate> Equations for A {
+    fn verdict(&self, precise: &[ComplexDd], p: &[Complex64], x: &[Complex64]) -> Verdict {
+        verdict(self, precise, p, x)
+    }
+}
+
 /// Adds the images of a point, one after the other, by the parameters and its coordinates.
 type AddImages<'a> = dyn FnMut(&[Complex64], &[Complex64], &mut Vec<Complex64>) + 'a;
 
@@ -53,6 +68,14 @@ impl<S: Evaluate> Maps for S {
 }
 
 impl<'a> Stated<'a> {
+    /// With these equations, all of which are solved. There may be more than unknowns; what is tracked are then as many
+    /// combinations of them, which have further solutions.
+    #[must_use]
+    pub fn equations<A: Evaluate>(mut self, all: &'a A) -> Self {
+        self.equations = Some(all);
+        self
+    }
+
     /// With these factors of unknowns and parameters, one an equation, none of which vanishes at a solution.
     #[must_use]
     pub fn nonzero<N: Evaluate>(mut self, factors: &'a N) -> Self {
@@ -77,14 +100,20 @@ impl<'a> Stated<'a> {
         orbits.unfolding.as_ref().is_some_and(|known| !known.steps.is_empty()).then_some(orbits)
     }
 
-    /// Marks regular ends at which a factor vanishes; returns their number.
-    pub(super) fn mark(&mut self, p: &[Complex64], paths: &mut PathSet) -> usize {
-        let Some(factors) = &self.factors else { return 0 };
-        let mut vanishes = factors.vanish();
+    /// Marks regular ends at which a factor vanishes, or that are not known to solve all equations; returns their number.
+    pub(super) fn mark<E: Evaluate>(&mut self, system: &E, p: &[Complex64], paths: &mut PathSet) -> usize {
+        let mut vanishes = self.factors.map(|factors| factors.vanish());
+        let mut all = self.equations.map(|all| (all, Refiner::new(system)));
+        let mut is_outside = |x: &[Complex64]| {
+            let solves = |(all, refiner): &mut (&dyn Equations, Refiner<'_, E>)| {
+                all.verdict(&refiner.extend(p, x), p, x) == Verdict::Solves
+            };
+            vanishes.as_mut().is_some_and(|vanishes| vanishes(p, x)) || !all.as_mut().is_none_or(solves)
+        };
         let mut marked = 0;
         for k in 0..paths.len() {
             let result = paths.results()[k];
-            if result.end == PathEnd::Success && vanishes(p, paths.point(k)) {
+            if result.end == PathEnd::Success && is_outside(paths.point(k)) {
                 paths.replace_record(k, PathResult { end: PathEnd::Degenerate, ..result });
                 marked += 1;
             }

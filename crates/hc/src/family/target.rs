@@ -7,9 +7,9 @@
 use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
-use super::overdetermined::Verdict;
 use super::symmetry::Symmetry;
 use super::track::{moved as moved_fibre, track_fibre};
+use super::verdict::Verdict;
 use crate::distinct::{coincidences, is_real};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};

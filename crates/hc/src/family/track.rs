@@ -127,8 +127,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
 
     /// The same, for a family that states more than its equations.
     ///
-    /// [`track`](Self::track) then counts ends at which a factor vanishes as failed ([`PathEnd::Degenerate`]); a path can
-    /// jump to them. Of each orbit under a symmetry one path is tracked, and the others end at its images, with no steps
+    /// [`track`](Self::track) then counts ends at which a factor vanishes, or that do not solve all equations, as failed
+    /// ([`PathEnd::Degenerate`]); a path can jump to them. Of each orbit under a symmetry one path is tracked, and the others end at its images, with no steps
     /// of their own. All are tracked where these paths do not tell where the others end: where one is lost, or images
     /// meet.
     #[must_use]
@@ -189,7 +189,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
                 PathCounts { retracked: all.retracked + before, ..all }
             }
         };
-        let degenerate = stated.mark(target, &mut self.paths).min(counts.finite);
+        let degenerate = stated.mark(self.system, target, &mut self.paths).min(counts.finite);
         counts.finite -= degenerate;
         counts.failed += degenerate;
         counts

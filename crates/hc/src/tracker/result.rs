@@ -17,7 +17,8 @@ pub enum PathEnd {
     /// The path stays bounded until `t` is nearly zero, but its end is not a regular solution.
     Singular,
     /// The path ended at a solution at which a factor vanishes that the family
-    /// [declares nonzero](crate::family::Stated::nonzero): it has jumped, or the parameters are degenerate.
+    /// [declares nonzero](crate::family::Stated::nonzero), or that does not solve [all of its
+    /// equations](crate::family::Stated::equations): it has jumped, or the parameters are degenerate.
     Degenerate,
     /// The start point is not a solution of the start system.
     InvalidStart,

@@ -94,6 +94,19 @@ fn ends_at_which_a_factor_vanishes_have_failed() {
     assert!(!paths.is_real(0) && paths.is_real(1));
 }
 
+/// The solution for `a = b` alone leads to solutions for such parameters only: combinations of the equations have
+/// one for any others.
+#[test]
+fn ends_that_do_not_solve_all_equations_have_failed() {
+    let family = Family::from_formulas(&["x"], &["a", "b"], &["x - a", "x - b"]).unwrap();
+    let special = Fibre::new(numbers(&[2.0, 2.0]), 1, numbers(&[2.0]));
+    let (counts, paths) = tracked(&family, &special, &[1.0, 3.0]);
+    assert_eq!((counts.tracked, counts.finite, counts.failed), (1, 0, 1));
+    assert_eq!(paths.results()[0].end, PathEnd::Degenerate);
+    let (counts, paths) = tracked(&family, &special, &[5.0, 5.0]);
+    assert!(counts.finite == 1 && (paths.point(0)[0] - 5.0).norm() < 1e-12);
+}
+
 /// Each factor is measured by its own derivatives, however large those of another are.
 #[test]
 fn a_steep_factor_does_not_hide_solutions_from_another() {
