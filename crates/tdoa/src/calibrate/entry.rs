@@ -1,6 +1,6 @@
 //! The way into a calibration, compiled once for the plane and once for space.
 
-use crate::calibrate::judge::errors_chosen::with_errors_chosen;
+use crate::calibrate::model::errors_chosen::with_errors_chosen;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::Hypotheses;

@@ -4,6 +4,7 @@
 mod entry;
 mod input;
 mod judge;
+mod model;
 mod options;
 mod receivers;
 mod report;
@@ -15,9 +16,10 @@ mod unfinished;
 pub use entry::{Calibrates, Dimension, calibrate, calibrate_with};
 pub use input::speed::SpeedEstimate;
 pub use judge::dimension_test::{DimensionTest, PlaneDistances};
-pub use judge::dimensions::{Calibrated, CalibratedError, calibrate_either};
 pub use judge::far_transmitters::FarTransmitter;
 pub use judge::mirror_images::MirrorImage;
+pub use model::calibrated::{Calibrated, CalibratedError};
+pub use model::dimensions::calibrate_either;
 pub use options::{
     CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, SearchOptions,
 };

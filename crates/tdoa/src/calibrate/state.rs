@@ -14,6 +14,7 @@ use crate::refine::RefinedNetwork;
 use hc::Monitor;
 
 /// Measurements, the networks that fit them, and what the steps so far have found out.
+#[derive(Clone)]
 pub(crate) struct State<'a, const D: usize> {
     pub(crate) options: &'a CalibrateOptions<D>,
     pub(crate) monitor: &'a Monitor,

@@ -26,70 +26,102 @@ pub(crate) fn calibrate_with<const D: usize>(
     sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
-    calibrate_looking(measured, options, sources, monitor, |_| true)
+    Draft::searched(measured, options, sources, monitor)?.cleared()?.judged()
 }
 
-/// Calibrates, and looks for errors of receivers if `may_have_errors` says so of what the search has found.
-pub(crate) fn calibrate_looking<const D: usize>(
-    measured: &Pseudoranges,
-    options: &CalibrateOptions<D>,
-    sources: &[&dyn Hypotheses<D>],
-    monitor: &Monitor,
-    may_have_errors: impl FnOnce(&State<'_, D>) -> bool,
-) -> Result<Calibration<D>, CalibrateError<D>> {
-    options.validate()?;
-    anchors::validate(measured, options)?;
-    let (mut table, impossible) = without_impossible(measured);
-    let mut left_out = Vec::from_iter(impossible);
-    if options.emissions == Emissions::Known {
-        let (ranges, negative) = as_ranges(&table)?;
-        table = Cow::Owned(ranges);
-        left_out.extend(negative);
-    }
-    check(monitor)?;
-    let mut usable = usable::<D>(&table)?;
-    check(monitor)?;
-    usable.warnings.extend(left_out);
-    let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
-    let mut input = Input::new(&table, usable, options.receiver_delays == ReceiverDelays::All);
-    let mut state = State::new(input.centred(), known, options, monitor);
-    let found = steps(&mut input, &mut state, sources, may_have_errors);
-    found.map_err(|error| error.leaving(state.so_far.map(|best| input.whole(best))))
+/// A calibration that is not finished: what takes part, and what the steps so far have found.
+#[derive(Clone)]
+pub(crate) struct Draft<'a, const D: usize> {
+    pub(crate) state: State<'a, D>,
+    pub(crate) input: Input<'a>,
 }
 
-/// The steps of a calibration, one after the other.
-fn steps<const D: usize>(
-    input: &mut Input<'_>,
-    state: &mut State<'_, D>,
-    sources: &[&dyn Hypotheses<D>],
-    may_have_errors: impl FnOnce(&State<'_, D>) -> bool,
-) -> Result<Calibration<D>, CalibrateError<D>> {
-    let options = state.options;
-    if options.receiver_delays == ReceiverDelays::All {
-        search_without_delays(state, sources)?;
-    } else if let Some((layout, places)) = local_layout(input, state, sources)? {
-        layout.refine(state, &places)?;
-        state.settle_candidates()?;
-    } else {
-        search_candidates(state, sources)?;
+impl<'a, const D: usize> Draft<'a, D> {
+    /// Networks for the measurements that take part, before errors of receivers are looked for.
+    pub(crate) fn searched(
+        measured: &'a Pseudoranges,
+        options: &'a CalibrateOptions<D>,
+        sources: &[&dyn Hypotheses<D>],
+        monitor: &'a Monitor,
+    ) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        options.validate()?;
+        anchors::validate(measured, options)?;
+        let (mut table, impossible) = without_impossible(measured);
+        let mut left_out = Vec::from_iter(impossible);
+        if options.emissions == Emissions::Known {
+            let (ranges, negative) = as_ranges(&table)?;
+            table = Cow::Owned(ranges);
+            left_out.extend(negative);
+        }
+        check(monitor)?;
+        let mut usable = usable::<D>(&table)?;
+        check(monitor)?;
+        usable.warnings.extend(left_out);
+        let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
+        let input = Input::new(table, usable, options.receiver_delays == ReceiverDelays::All);
+        let state = State::new(input.centred(), known, options, monitor);
+        Draft { state, input }.then(|draft| draft.search(sources))
     }
-    let best = &state.ranked[0];
-    state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
-    if may_have_errors(state) {
-        state.clear()?;
-        state.leave_out_reflections()?;
+
+    /// Without the errors that receivers show, and without reflections.
+    pub(crate) fn cleared(self) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        self.then(|Draft { state, .. }| {
+            state.clear()?;
+            state.leave_out_reflections()
+        })
     }
-    state.hold(&input.usable)?;
-    state.level()?;
-    check(state.monitor)?;
-    if state.anchors.is_some() {
-        // They were found without the known positions.
-        state.neighbours.clear();
-    } else if options.errors != Errors::OneSided && !state.has_delays_of_all() {
-        state.compare_with_one_sided()?;
+
+    /// The calibration: the network with what is known beforehand, and how sure it is.
+    pub(crate) fn judged(self) -> Result<Calibration<D>, CalibrateError<D>> {
+        let draft = self.then(Draft::settle)?;
+        let found = draft.state.judge(&draft.input).and_then(|judged| draft.state.report(&draft.input, &judged));
+        found.map_err(|error| draft.with_the_best_so_far(error))
     }
-    let judged = state.judge(input)?;
-    state.report(input, &judged)
+
+    /// The draft after a step.
+    fn then(
+        mut self,
+        step: impl FnOnce(&mut Draft<'a, D>) -> Result<(), CalibrateError<D>>,
+    ) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        match step(&mut self) {
+            Ok(()) => Ok(self),
+            Err(error) => Err(self.with_the_best_so_far(error)),
+        }
+    }
+
+    fn with_the_best_so_far(&self, error: CalibrateError<D>) -> CalibrateError<D> {
+        error.leaving(self.state.so_far.clone().map(|best| self.input.whole(best)))
+    }
+
+    fn search(&mut self, sources: &[&dyn Hypotheses<D>]) -> Result<(), CalibrateError<D>> {
+        let Draft { state, input } = self;
+        if state.options.receiver_delays == ReceiverDelays::All {
+            search_without_delays(state, sources)?;
+        } else if let Some((layout, places)) = local_layout(input, state, sources)? {
+            layout.refine(state, &places)?;
+            state.settle_candidates()?;
+        } else {
+            search_candidates(state, sources)?;
+        }
+        let best = &state.ranked[0];
+        state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
+        Ok(())
+    }
+
+    /// Known positions, heights that the measurements hardly tell, and one-sided errors in comparison.
+    fn settle(&mut self) -> Result<(), CalibrateError<D>> {
+        let Draft { state, input } = self;
+        state.hold(&input.usable)?;
+        state.level()?;
+        check(state.monitor)?;
+        if state.anchors.is_some() {
+            // They were found without the known positions.
+            state.neighbours.clear();
+        } else if state.options.errors != Errors::OneSided && !state.has_delays_of_all() {
+            state.compare_with_one_sided()?;
+        }
+        Ok(())
+    }
 }
 
 /// Searches networks for measurements less first guesses of the receivers' delays.
@@ -148,7 +180,7 @@ fn local_layout<const D: usize>(
     }
     let receivers = places.iter().map(|&i| input.usable.receivers[i]).collect();
     let transmitters = columns.iter().map(|&j| input.usable.transmitters[j]).collect();
-    *input = Input::new(input.table, Usable { receivers, transmitters, warnings }, false);
+    *input = Input::new(input.table.clone(), Usable { receivers, transmitters, warnings }, false);
     *state = State::new(input.centred(), known, options, monitor);
     Ok(Some((layout, places)))
 }

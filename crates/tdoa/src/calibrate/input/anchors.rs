@@ -18,6 +18,7 @@ use crate::refine::{Covariance, RefinedNetwork};
 const EXACT: f64 = 1e-6;
 
 /// Known positions among the usable nodes, about their centroid.
+#[derive(Clone)]
 pub(crate) struct Anchors<const D: usize> {
     /// Nodes of which all coordinates are known, exactly or not, and where they are.
     pub(crate) whole: Vec<(Node, [f64; D])>,

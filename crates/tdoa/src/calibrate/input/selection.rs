@@ -5,11 +5,13 @@ use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::Usable;
 use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
+use std::borrow::Cow;
 
 /// A table and the part of it that is calibrated.
+#[derive(Clone)]
 pub(crate) struct Input<'a> {
     /// The table without impossible values.
-    pub(crate) table: &'a Pseudoranges,
+    pub(crate) table: Cow<'a, Pseudoranges>,
     /// The nodes that take part.
     pub(crate) usable: Usable,
     /// What is subtracted from the measurements of each of these transmitters; the offsets take it back at
@@ -19,7 +21,7 @@ pub(crate) struct Input<'a> {
 
 impl<'a> Input<'a> {
     /// The nodes that take part in a calibration, in which all receivers may be `delayed`.
-    pub(crate) fn new(table: &'a Pseudoranges, usable: Usable, delayed: bool) -> Input<'a> {
+    pub(crate) fn new(table: Cow<'a, Pseudoranges>, usable: Usable, delayed: bool) -> Input<'a> {
         let selected = table.select(&usable.receivers, &usable.transmitters);
         // What is subtracted does not depend on the delays.
         let shifts = match (table.are_ranges(), delayed) {

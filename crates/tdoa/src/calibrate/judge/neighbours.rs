@@ -37,6 +37,7 @@ pub(crate) enum Reason<const D: usize> {
 }
 
 /// A neighbour of the best network.
+#[derive(Clone)]
 pub(crate) struct Neighbour<const D: usize> {
     pub(crate) network: Network<D>,
     /// By how much the measurements are less likely than under the best network, natural logarithm; where

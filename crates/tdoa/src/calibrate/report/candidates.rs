@@ -22,7 +22,7 @@ impl<const D: usize> State<'_, D> {
     /// The measurements of which another candidate than the first was chosen, and how many measurements have
     /// several candidates.
     pub(crate) fn chosen(&self, input: &Input<'_>) -> (Vec<ChosenCandidate>, usize) {
-        let table = input.table;
+        let table = &input.table;
         let mut doubtful = 0;
         let mut chosen = Vec::new();
         for (a, b, candidates) in self.measured.doubtful() {

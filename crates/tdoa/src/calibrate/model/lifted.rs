@@ -3,7 +3,7 @@
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, SearchOptions};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::{Hypotheses, generator};
-use crate::calibrate::steps::calibrate_with;
+use crate::calibrate::steps::Draft;
 use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
@@ -12,13 +12,13 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 
 /// Heights of a planar network's starts in space, as shares of its size.
-pub(super) const LIFTED: [f64; 6] = [0.03, 0.1, 0.3, 0.03, 0.1, 0.3];
+const LIFTED: [f64; 6] = [0.03, 0.1, 0.3, 0.03, 0.1, 0.3];
 
 /// Starts in space from a planar network.
-pub(super) struct Lifted<'a> {
-    pub(super) names: &'a [String],
-    pub(super) receivers: &'a [Option<[f64; 2]>],
-    pub(super) size: f64,
+struct Lifted<'a> {
+    names: &'a [String],
+    receivers: &'a [Option<[f64; 2]>],
+    size: f64,
 }
 
 impl Hypotheses<3> for Lifted<'_> {
@@ -57,23 +57,28 @@ pub(super) fn from_sources(starts: usize, search: SearchOptions) -> SearchOption
     SearchOptions { min_starts: starts, max_starts: starts, restarts: false, minimal_subsets: 0, ..search }
 }
 
-/// A calibration in space that starts at a planar one; `None` where there is none.
-pub(super) fn lifted(
-    measured: &Pseudoranges,
-    options: &CalibrateOptions<3>,
-    flat: &Calibration,
-    monitor: &Monitor,
-) -> Result<Option<Calibration<3>>, CalibrateError<3>> {
-    let options = CalibrateOptions { search: from_sources(LIFTED.len(), options.search), ..options.clone() };
-    let size = spread(flat.receivers.iter().flatten());
-    let source = Lifted { names: &flat.receiver_names, receivers: &flat.receivers, size };
-    unless_stopped(calibrate_with(measured, &options, &[&source], monitor))
+/// These options for starts from a planar network.
+pub(super) fn from_plane(options: &CalibrateOptions<3>) -> CalibrateOptions<3> {
+    CalibrateOptions { search: from_sources(LIFTED.len(), options.search), ..options.clone() }
 }
 
-/// A calibration if there is one; stopping is an error, failing is none.
-pub(super) fn unless_stopped<const D: usize>(
-    ended: Result<Calibration<D>, CalibrateError<D>>,
-) -> Result<Option<Calibration<D>>, CalibrateError<D>> {
+/// Networks in space whose search starts at a planar one, with options [`from_plane`]; `None` where there is none.
+pub(super) fn lifted<'a>(
+    measured: &'a Pseudoranges,
+    options: &'a CalibrateOptions<3>,
+    flat: &Draft<'_, 2>,
+    monitor: &'a Monitor,
+) -> Result<Option<Draft<'a, 3>>, CalibrateError<3>> {
+    let receivers: Vec<Option<[f64; 2]>> = flat.state.ranked[0].network.receivers.iter().copied().map(Some).collect();
+    let names = flat.state.measured.receiver_names();
+    let source = Lifted { names, receivers: &receivers, size: spread(receivers.iter().flatten()) };
+    unless_stopped(Draft::searched(measured, options, &[&source], monitor))
+}
+
+/// What there is; stopping is an error, failing is none.
+pub(super) fn unless_stopped<T, const D: usize>(
+    ended: Result<T, CalibrateError<D>>,
+) -> Result<Option<T>, CalibrateError<D>> {
     match ended {
         Ok(found) => Ok(Some(found)),
         Err(error @ CalibrateError::Cancelled(_)) => Err(error),

@@ -3,71 +3,21 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
-use crate::calibrate::judge::errors_chosen::{Decided, Verdict, with_errors_chosen};
-use crate::calibrate::judge::excluded::plane_is_excluded;
-use crate::calibrate::judge::explained::explained_by_errors;
-use crate::calibrate::judge::known_heights::{KnownHeights, in_plane};
-use crate::calibrate::judge::lifted::{Known, from_sources, lifted, unless_stopped};
-use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
+use crate::calibrate::model::calibrated::{Calibrated, CalibratedError};
+use crate::calibrate::model::errors_chosen::with_errors_chosen;
+use crate::calibrate::model::excluded::plane_is_excluded;
+use crate::calibrate::model::known_heights::{KnownHeights, in_plane};
+use crate::calibrate::model::lifted::{from_plane, lifted, unless_stopped};
+use crate::calibrate::model::question::Question;
+use crate::calibrate::options::CalibrateOptions;
 use crate::calibrate::report::calibration::Calibration;
-use crate::calibrate::search::hypotheses::Hypotheses;
-use crate::calibrate::search::truncated_cost::truncated;
-use crate::calibrate::steps::{calibrate_looking, calibrate_with};
+use crate::calibrate::steps::{Draft, calibrate_with};
 use crate::flatness::{FLAT, slenderness};
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-use thiserror::Error;
-
-/// Probability of the quantile that the gain of heights must exceed.
-const QUANTILE: f64 = 1.0 - 1e-4;
-
-/// Heights enter distances by their squares, and the search takes the best of many networks: gains of
-/// planar networks have about twice the mean that as many unknowns of a linear model would give (measured
-/// on 20 to 30 planar networks of six kinds; `tdoa experiment dimension` counts).
-const BENT: f64 = 2.0;
 
 /// Starts of the search in the plane, before one in space tells whether more are worth it.
 const FIRST_STARTS: usize = 96;
-
-/// Deviations of measurements are at least this share of the network's size: exact ones have no noise.
-const LEAST_DEVIATION: f64 = 1e-6;
-
-/// A network whose dimension was chosen by its measurements.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Calibrated {
-    /// In the plane.
-    Plane(Calibration),
-    /// In space.
-    Space(Calibration<3>),
-}
-
-impl Decided for Calibrated {
-    fn verdict(&self) -> Verdict {
-        match self {
-            Calibrated::Plane(found) => found.verdict(),
-            Calibrated::Space(found) => found.verdict(),
-        }
-    }
-
-    fn warnings(&mut self) -> &mut Vec<String> {
-        match self {
-            Calibrated::Plane(found) => &mut found.warnings,
-            Calibrated::Space(found) => &mut found.warnings,
-        }
-    }
-}
-
-/// Why there is none.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum CalibratedError {
-    /// The calibration in the plane failed, or was stopped.
-    #[error(transparent)]
-    Plane(#[from] CalibrateError),
-    /// The one in space did.
-    #[error(transparent)]
-    Space(#[from] CalibrateError<3>),
-}
 
 /// Calibrates in space, or in the plane where the measurements do not need a third coordinate.
 ///
@@ -150,67 +100,32 @@ fn choose(
     let plane = in_plane(options, measured.receivers());
     let mut first = plane.clone();
     first.search.max_starts = plane.search.max_starts.min(FIRST_STARTS.max(plane.search.min_starts));
-    let mut excluded = false;
-    let mut flat = calibrate_looking(measured, &first, &[], monitor, |plane| {
-        excluded = plane_is_excluded(plane, options);
-        !excluded
-    })?;
-    if excluded {
-        if let Some(found) = unless_stopped(calibrate_with(measured, options, &[], monitor))? {
-            let test = compare(measured, &flat, &found, options);
-            if found.fits && test.is_space() {
-                return Ok(Calibrated::Space(Calibration { dimension_test: Some(test), ..found }));
-            }
-        }
-        flat = calibrate_with(measured, &first, &[], monitor)?;
+    let question = Question { measured, in_space: options, in_plane: &first, monitor };
+    let from_plane = from_plane(options);
+
+    let draft = Draft::searched(measured, &first, &[], monitor)?;
+    let raised = lifted(measured, &from_plane, &draft, monitor)?;
+    if raised.as_ref().is_some_and(|raised| plane_is_excluded(&draft, raised))
+        && let Some(space) = question.without_plane(&draft)?
+    {
+        return Ok(Calibrated::Space(space));
     }
+    let mut flat = draft.cleared()?.judged()?;
+    let raised = match raised {
+        Some(raised) => unless_stopped(raised.cleared().and_then(Draft::judged))?,
+        None => None,
+    };
+    let mut test = raised.as_ref().map_or_else(DimensionTest::default, |raised| question.compare(&flat, raised));
     let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
-    let raised = lifted(measured, options, &flat, monitor)?;
-    let mut test =
-        raised.as_ref().map_or_else(DimensionTest::default, |raised| compare(measured, &flat, raised, options));
-    if settled && flat.fits && flat.unique_receivers && !test.is_space() {
-        doubt(&mut flat, test);
-        return Ok(Calibrated::Plane(flat));
-    }
-    let known = raised.as_ref().map(Known);
-    let sources: Vec<&dyn Hypotheses<3>> = known.iter().map(|source| source as &dyn Hypotheses<3>).collect();
-    let mut in_space = options.clone();
-    if flat.fits && !test.is_space() {
-        // Planar measurements have many networks in space that fit alike, on which starts do not agree.
-        in_space.search.max_starts = first.search.max_starts;
-    }
-    if let Some(mut whole) = unless_stopped(calibrate_with(measured, &in_space, &sources, monitor))? {
-        let otherwise = otherwise_cleared(measured, &first, &flat, monitor)?;
-        let takes_out = first.receiver_delays == ReceiverDelays::Auto;
-        // With the errors of receivers, and without.
-        let [bent, judged] = match &otherwise {
-            Some(otherwise) if takes_out => [otherwise, &flat],
-            Some(otherwise) => [&flat, otherwise],
-            None => [&flat; 2],
-        };
-        let found = compare(measured, judged, &whole, options);
-        // What fits best need not be likeliest: a few heights may say about what many do.
-        let likelier = if found.evidence >= test.evidence { found } else { test };
-        if let Some(first) = raised.filter(|first| first.determined && test.is_likelier_than(&found)) {
-            whole = first;
-            whole.call_not_unique(
-                "another network fits the measurements more closely, with heights that are less likely".into(),
-            );
+    if !(settled && flat.fits && flat.unique_receivers && !test.is_space()) {
+        match question.search_space(&flat, raised, test)? {
+            Some((space, true)) => return Ok(Calibrated::Space(space)),
+            Some((space, false)) => test = space.dimension_test.unwrap_or(test),
+            None => {}
         }
-        let explained = otherwise.as_ref().map_or(0.0, |_| explained_by_errors(measured, bent, judged));
-        let evidence = likelier.evidence.map(|evidence| evidence - explained);
-        test = DimensionTest { evidence, change: likelier.change, ..found };
-        // Where nothing fits, the better one is told.
-        if (whole.fits || !flat.fits) && (test.is_space() || (whole.fits && !judged.fits)) {
-            if test.leaves_both() && judged.fits {
-                whole.call_not_unique("the measurements are nearly as likely in the plane as in space".into());
-            }
-            whole.dimension_test = Some(test);
-            return Ok(Calibrated::Space(whole));
+        if !settled {
+            flat = calibrate_with(measured, &plane, &[], monitor)?;
         }
-    }
-    if !settled {
-        flat = calibrate_with(measured, &plane, &[], monitor)?;
     }
     doubt(&mut flat, test);
     Ok(Calibrated::Plane(flat))
@@ -246,64 +161,6 @@ fn doubt(flat: &mut Calibration, test: DimensionTest) {
              receivers off the line, or say with --dimensions 2 that all nodes lie in one plane"
                 .into(),
         );
-    }
-}
-
-/// The planar network without the errors that receivers show in it, or with them where they are taken out; `None` if it
-/// shows none.
-fn otherwise_cleared(
-    measured: &Pseudoranges,
-    options: &CalibrateOptions,
-    flat: &Calibration,
-    monitor: &Monitor,
-) -> Result<Option<Calibration>, CalibrateError> {
-    if flat.receiver_errors.is_empty() || options.errors == Errors::OneSided {
-        return Ok(None);
-    }
-    let receiver_delays = match options.receiver_delays {
-        ReceiverDelays::None => ReceiverDelays::Auto,
-        ReceiverDelays::Auto => ReceiverDelays::None,
-        // Errors of all are no doubt of one.
-        ReceiverDelays::All => return Ok(None),
-    };
-    // Its search would find the same.
-    let options = CalibrateOptions { receiver_delays, search: from_sources(1, options.search), ..options.clone() };
-    unless_stopped(calibrate_with(measured, &options, &[&Known(flat)], monitor))
-}
-
-/// The likelihood ratio of space and plane, over the measurements that both have, with the deviation that
-/// is given or left in space. Outliers cost the same in both.
-fn compare(
-    measured: &Pseudoranges,
-    flat: &Calibration,
-    whole: &Calibration<3>,
-    options: &CalibrateOptions<3>,
-) -> DimensionTest {
-    let deviation = whole.sigma.max(LEAST_DEVIATION * whole.extent().unwrap_or(0.0));
-    let (mut in_plane, mut in_space) = (0.0, 0.0);
-    for (i, j, residual) in whole.residuals.iter() {
-        let Some(other) = flat.residuals.get(i, j) else { continue };
-        let cost = |length: f64| truncated(length / (deviation * measured.sigma(i, j).unwrap_or(1.0)));
-        in_plane += cost(other.length);
-        in_space += cost(residual.length);
-    }
-    let located = whole.receivers.iter().flatten().count() + whole.transmitters.iter().flatten().count();
-    // Heights, but for those of a plane that moves.
-    let heights = located.saturating_sub(3).max(1) as f64;
-    let given = options.sigma.is_some() || measured.has_sigmas();
-    let quantile = if given {
-        ChiSquared::new(heights).ok().map(|all| all.inverse_cdf(QUANTILE))
-    } else {
-        // Without measurements left over there is no deviation to compare with.
-        let left = whole.redundancy as f64;
-        FisherSnedecor::new(heights, left).ok().map(|all| heights * all.inverse_cdf(QUANTILE))
-    };
-    let of_heights = whole.dimension_test.unwrap_or_default();
-    DimensionTest {
-        evidence: of_heights.evidence,
-        change: of_heights.change,
-        gain: Some(in_plane - in_space).filter(|gain| gain.is_finite()),
-        needed: quantile.map(|quantile| 0.5 * BENT * quantile).filter(|needed| needed.is_finite()),
     }
 }
 

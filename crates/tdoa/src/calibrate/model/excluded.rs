@@ -1,14 +1,10 @@
 //! Whether a plane is out of the question, before errors of receivers are looked for in it.
 
-use crate::calibrate::judge::lifted::{LIFTED, Lifted, from_sources};
-use crate::calibrate::options::{CalibrateOptions, Errors, ReceiverDelays};
-use crate::calibrate::search::candidates::search_candidates;
+use crate::calibrate::options::{Errors, ReceiverDelays};
 use crate::calibrate::search::local::hearing_is_local;
 use crate::calibrate::search::truncated_cost::{OUTLIER_COST, truncated};
-use crate::calibrate::state::State;
-use crate::degeneracy::{Usable, usable};
+use crate::calibrate::steps::Draft;
 use crate::observations::{Observation, Observations};
-use crate::points::spread;
 
 /// The mean gain of a measurement by heights, as a share of what an outlier costs, above which a plane is out of the
 /// question.
@@ -19,27 +15,25 @@ const SPARE: f64 = 1.5;
 
 /// Whether heights explain nearly all that a planar network leaves, at the half of the receivers where that is least:
 /// errors of fewer receivers are no reason for it. Then what a plane would have of such errors need not be known.
-pub(super) fn plane_is_excluded(plane: &State<'_, 2>, options: &CalibrateOptions<3>) -> bool {
-    let State { measured, known, monitor, .. } = plane;
+pub(super) fn plane_is_excluded(plane: &Draft<'_, 2>, space: &Draft<'_, 3>) -> bool {
+    let (measured, options) = (&plane.state.measured, plane.state.options);
     let has_delays = options.receiver_delays == ReceiverDelays::All;
     if has_delays || options.errors == Errors::OneSided || hearing_is_local(measured) {
         return false;
     }
-    let Ok(Usable { receivers, transmitters, .. }) = usable::<3>(measured) else { return false };
-    let options = CalibrateOptions { search: from_sources(LIFTED.len(), options.search), ..options.clone() };
-    let mut space = State::new(measured.select(&receivers, &transmitters), *known, &options, monitor);
-    let flat = &plane.ranked[0].network;
-    let places: Vec<Option<[f64; 2]>> = flat.receivers.iter().copied().map(Some).collect();
-    let source = Lifted { names: measured.receiver_names(), receivers: &places, size: spread(places.iter().flatten()) };
-    if search_candidates(&mut space, &[&source]).is_err() || monitor.is_cancelled() {
+    let (flat, best) = (&plane.state.ranked[0].network, &space.state.ranked[0].network);
+    let (observations, deviation) = (&space.state.observations, space.state.deviation);
+    if (observations.len() as f64) < SPARE * observations.unknowns() as f64 || deviation <= 0.0 {
         return false;
     }
-    let (observations, best) = (&space.observations, &space.ranked[0].network);
-    if (observations.len() as f64) < SPARE * observations.unknowns() as f64 || space.deviation <= 0.0 {
-        return false;
-    }
+    // Nodes of space, as nodes of the plane.
+    let (of_plane, of_space) = (&plane.input.usable, &space.input.usable);
+    let among = |all: &[usize], some: &[usize]| some.iter().map(|i| all.binary_search(i).ok()).collect();
+    let receivers: Option<Vec<usize>> = among(&of_plane.receivers, &of_space.receivers);
+    let transmitters: Option<Vec<usize>> = among(&of_plane.transmitters, &of_space.transmitters);
+    let Some((receivers, transmitters)) = receivers.zip(transmitters) else { return false };
     let in_plane = Observations::<2>::new(measured, |_, _| true);
-    let cost = |residual: f64| truncated(residual / space.deviation);
+    let cost = |residual: f64| truncated(residual / deviation);
     let of = |receiver: usize| -> (f64, usize) {
         let in_plane = in_plane.of_receiver(receivers[receiver]);
         let in_plane = in_plane.filter(|o| transmitters.binary_search(&o.transmitter).is_ok());
@@ -57,22 +51,22 @@ pub(super) fn plane_is_excluded(plane: &State<'_, 2>, options: &CalibrateOptions
 
 #[cfg(test)]
 mod tests {
+    use crate::calibrate::model::lifted::{from_plane, lifted};
+    use crate::calibrate::steps::Draft;
     use crate::calibrate::{Calibrated, calibrate_either};
     use crate::{CalibrateOptions, Layout, ReceiverDelays, ReceiverFault, SimulateOptions, simulate};
+    use hc::Monitor;
 
     fn is_excluded<const D: usize>(made: &SimulateOptions<D>) -> bool
     where
         crate::calibrate::Dimension<D>: crate::calibrate::Calibrates<D>,
     {
-        let made = simulate(made).unwrap();
-        let (plane, space) = (CalibrateOptions::<2>::new(), CalibrateOptions::<3>::new());
-        let mut excluded = false;
-        crate::calibrate::steps::calibrate_looking(&made.pseudoranges, &plane, &[], &hc::Monitor::default(), |state| {
-            excluded = super::plane_is_excluded(state, &space);
-            !excluded
-        })
-        .unwrap();
-        excluded
+        let measured = simulate(made).unwrap().pseudoranges;
+        let (plane, space) = (CalibrateOptions::<2>::new(), from_plane(&CalibrateOptions::new()));
+        let monitor = Monitor::default();
+        let plane = Draft::searched(&measured, &plane, &[], &monitor).unwrap();
+        let space = lifted(&measured, &space, &plane, &monitor).unwrap().unwrap();
+        super::plane_is_excluded(&plane, &space)
     }
 
     #[test]
