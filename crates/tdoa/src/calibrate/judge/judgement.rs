@@ -189,7 +189,7 @@ impl<const D: usize> State<'_, D> {
             };
             others.iter().filter(is_elsewhere).count() > agreeing
         };
-        let open = ellipse_radius.is_some() && weak.are_most_receivers() || !turning.is_empty() || scattered;
+        let open = ellipse_radius.is_some() && weak.are_most() || !turning.is_empty() || scattered;
         let determined = !open && !transposed && 2 * doubtful.len() < best.receivers.len();
         let receivers_agree = apart.is_empty() && others.iter().all(|other| same_receivers(&other.network, best));
         let transmitters_agree = apart.is_empty() && others.iter().all(|other| same_transmitters(&other.network, best));

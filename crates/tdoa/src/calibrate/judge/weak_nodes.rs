@@ -67,6 +67,8 @@ pub(crate) struct WeakNodes {
     open: usize,
     /// Receivers in all.
     all: usize,
+    /// Transmitters in all.
+    heard: usize,
 }
 
 impl WeakNodes {
@@ -82,12 +84,18 @@ impl WeakNodes {
         let open = (0..all).filter(|i| uncertainty.loose.contains(i) || receivers.contains(i)).count();
         let is_far = |j: &usize| far.iter().any(|far| far.transmitter == *j);
         let transmitters = (0..network.transmitters.len()).filter(|j| of_transmitter(j) && !is_far(j)).collect();
-        WeakNodes { receivers, transmitters, open, all }
+        WeakNodes { receivers, transmitters, open, all, heard: network.transmitters.len() }
     }
 
     /// Whether they are more than half of the receivers.
     pub(crate) fn are_most_receivers(&self) -> bool {
         2 * self.open > self.all
+    }
+
+    /// Whether they are most receivers, or most nodes with more than a quarter of the receivers among them.
+    pub(crate) fn are_most(&self) -> bool {
+        let nodes = self.open + self.transmitters.len();
+        self.are_most_receivers() || (4 * self.open > self.all && 2 * nodes > self.all + self.heard)
     }
 }
 
