@@ -270,7 +270,7 @@ impl Expansion<'_> {
     }
 }
 
-/// The same polynomial over the integers, if it is one.
+/// A polynomial with integer coefficients, if all of them are integers.
 fn integers(a: &Polynomial<Exact>) -> Option<Polynomial<BigInt>> {
     let is_integer = |c: &Exact| exact::is_real(c) && c.re.is_integer();
     a.terms().iter().all(|(_, c)| is_integer(c)).then(|| a.map(|c| c.re.numer().clone()))

@@ -58,7 +58,8 @@ impl System {
         self.instantiate_with(arena, unknowns, parameters, |_, formula| formula)
     }
 
-    /// The same with what `replaced` gives for each node, from its formula.
+    /// The equations with these formulas in place of unknowns and parameters, and for each node what `replaced` makes of
+    /// its formula.
     pub(crate) fn instantiate_with<'a>(
         &self,
         arena: &'a Expressions,

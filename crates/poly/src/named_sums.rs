@@ -6,7 +6,7 @@ use crate::graph::{Graph, Id, Node};
 use crate::system::System;
 
 impl System {
-    /// The same equations with a new unknown for each sum in a product of more than `factors` sums,
+    /// These equations with a new unknown for each sum in a product of more than `factors` sums,
     /// followed by an equation for each new unknown; `None` if there is no such product, or more than
     /// `most` unknowns would be new.
     ///

@@ -4,7 +4,7 @@ use crate::arrays::array;
 use crate::errors::{Failure, guarded};
 use crate::json::{self, FORMAT};
 use crate::measured::Table;
-use crate::work::{Done, How, run, whole};
+use crate::work::{Done, WorkOptions, run, whole};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,10 +16,10 @@ use tdoa::{
     ReceiverDelays, Unfinished, calibrate_with,
 };
 
-/// Settings as Python gives them.
+/// CalibrateSettings as Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Settings {
+pub(crate) struct CalibrateSettings {
     /// 2 or 3; the measurements decide where there is neither.
     dimensions: Option<usize>,
     sigma: Option<f64>,
@@ -37,7 +37,7 @@ pub(crate) struct Settings {
     agreeing: Option<usize>,
 }
 
-impl Settings {
+impl CalibrateSettings {
     fn options<const D: usize>(self) -> Result<CalibrateOptions<D>, Failure> {
         let mut options = CalibrateOptions::new();
         options.sigma = self.sigma;
@@ -104,9 +104,9 @@ struct Unit {
 pub(crate) fn calibrate<'py>(
     py: Python<'py>,
     table: Table<'py>,
-    settings: Settings,
+    settings: CalibrateSettings,
     speed: Option<f64>,
-    how: How,
+    how: WorkOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let measured = table.measured()?;

@@ -2,8 +2,8 @@
 
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
-use crate::system::Given;
-use crate::work::{Done, How, run, whole};
+use crate::system::WrittenSystem;
+use crate::work::{Done, WorkOptions, run, whole};
 use hc::Run;
 use hc::certify::{CertifyOptions, Reality};
 use hc::poly::{ExpandLimits, Polynomial};
@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 
 /// The mixed volume of a system; of an interrupted search a lower bound.
 #[pyfunction]
-pub(crate) fn mixed_volume(py: Python<'_>, system: Given, how: How) -> PyResult<Bound<'_, PyAny>> {
+pub(crate) fn mixed_volume(py: Python<'_>, system: WrittenSystem, how: WorkOptions) -> PyResult<Bound<'_, PyAny>> {
     guarded(|| {
         let system = system.system()?;
         let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
@@ -36,9 +36,9 @@ pub(crate) fn mixed_volume(py: Python<'_>, system: Given, how: How) -> PyResult<
 #[pyfunction]
 pub(crate) fn certify<'py>(
     py: Python<'py>,
-    system: Given,
+    system: WrittenSystem,
     points: PyReadonlyArrayDyn<'py, Complex64>,
-    how: How,
+    how: WorkOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let (system, points) = (system.system()?, rows(&points)?);

@@ -2,8 +2,8 @@
 
 use crate::errors::{Failure, guarded};
 use crate::json::{self, FORMAT};
-use crate::system::Given;
-use crate::work::{Done, How, run, whole};
+use crate::system::WrittenSystem;
+use crate::work::{Done, WorkOptions, run, whole};
 use hc::witness::Decomposition;
 use hc::{Run, SolveOptions};
 use pyo3::prelude::*;
@@ -24,10 +24,10 @@ struct Report<'a> {
 #[pyfunction]
 pub(crate) fn decompose(
     py: Python<'_>,
-    system: Given,
+    system: WrittenSystem,
     seed: u64,
     max_paths: u64,
-    how: How,
+    how: WorkOptions,
 ) -> PyResult<Bound<'_, PyAny>> {
     guarded(|| {
         let system = system.system()?;

@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
-use crate::work::{Done, How, run, whole};
+use crate::work::{Done, WorkOptions, run, whole};
 use hc::family::{StartFile, TargetLimits};
 use hc::{FamilyError, MonodromyOptions, Run, Solution, Solutions, SolveOptions};
 use num_complex::Complex64;
@@ -85,7 +85,7 @@ impl Family {
         group: usize,
         up_to_symmetry: bool,
         first: Option<PyRef<'py, Fibre>>,
-        how: How,
+        how: WorkOptions,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let family = self.0.clone();
@@ -129,7 +129,7 @@ impl Family {
         certify: bool,
         up_to_symmetry: bool,
         effort: (f64, Option<f64>),
-        how: How,
+        how: WorkOptions,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let (family, fibre, targets) = (self.0.clone(), fibre.0.clone(), rows(&targets)?);

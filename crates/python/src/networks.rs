@@ -3,7 +3,7 @@
 use crate::arrays::{array, elements};
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
-use crate::work::{Done, How, run, whole};
+use crate::work::{Done, WorkOptions, run, whole};
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -36,7 +36,7 @@ pub(crate) fn solve_network<'py>(
     py: Python<'py>,
     table: Table<'py>,
     asked: Asked,
-    how: How,
+    how: WorkOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let mut options = MinimalOptions::default();
@@ -92,7 +92,7 @@ type Solved<const D: usize> = (MinimalSolution<D>, Option<RootProofs>);
 fn answer<'py, const D: usize>(
     py: Python<'py>,
     [receivers, transmitters]: [Vec<String>; 2],
-    how: &How,
+    how: &WorkOptions,
     solve: impl FnOnce(&Monitor) -> Result<Solved<D>, MinimalError> + Send + 'static,
 ) -> Result<Bound<'py, PyAny>, Failure> {
     let Done { result: solved, stopped, seconds } = run(py, how, solve)?;

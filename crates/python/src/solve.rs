@@ -3,17 +3,17 @@
 use crate::arrays::array;
 use crate::errors::{Failure, guarded};
 use crate::networks::numbers;
-use crate::system::Given;
-use crate::work::{Done, How, run, whole};
+use crate::system::WrittenSystem;
+use crate::work::{Done, WorkOptions, run, whole};
 use hc::{Run, Solutions, SolveOptions, Start};
 use num_complex::Complex64;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Settings as Python gives them.
+/// SolveSettings as Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Settings {
+pub(crate) struct SolveSettings {
     seed: u64,
     start: String,
     /// Names of unknowns.
@@ -25,7 +25,12 @@ pub(crate) struct Settings {
 
 /// All isolated solutions of a system: a dict of arrays.
 #[pyfunction]
-pub(crate) fn solve(py: Python<'_>, system: Given, settings: Settings, how: How) -> PyResult<Bound<'_, PyAny>> {
+pub(crate) fn solve(
+    py: Python<'_>,
+    system: WrittenSystem,
+    settings: SolveSettings,
+    how: WorkOptions,
+) -> PyResult<Bound<'_, PyAny>> {
     guarded(|| {
         let system = system.system()?;
         let unknowns = system.variables();

@@ -23,7 +23,7 @@ const MOST_THREADS: usize = 1024;
 /// How work is done: what all functions take.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct How {
+pub(crate) struct WorkOptions {
     /// Threads; all cores for `None`.
     pub(crate) threads: Option<usize>,
     /// Called with words, how much is done and of how much.
@@ -78,7 +78,7 @@ pub(crate) struct Done<R> {
 /// A wrong number of threads, a panic, or an exception of the progress.
 pub(crate) fn run<R: Send + 'static>(
     py: Python<'_>,
-    how: &How,
+    how: &WorkOptions,
     work: impl FnOnce(&Monitor) -> R + Send + 'static,
 ) -> Result<Done<R>, Failure> {
     let timed = move |monitor: &Monitor| {
@@ -88,7 +88,7 @@ pub(crate) fn run<R: Send + 'static>(
     };
     let (ended, stopped) = match (how.threads == Some(1)).then(alone).flatten() {
         Some(pool) => {
-            let (monitor, stopped) = heeding(py, how);
+            let (monitor, stopped) = watched_by(py, how);
             let ended = py.detach(|| pool.install(|| timed(&monitor)));
             (ended, stopped.lock().unwrap_or_else(PoisonError::into_inner).take())
         }
@@ -123,7 +123,7 @@ fn heed(py: Python<'_>, progress: Option<&Py<PyAny>>, now: Progress, told: &mut 
 type Stopped = Arc<Mutex<Option<PyErr>>>;
 
 /// A monitor of work on this thread: where the work asks whether it is to stop, signals are heeded.
-fn heeding(py: Python<'_>, how: &How) -> (Monitor, Stopped) {
+fn watched_by(py: Python<'_>, how: &WorkOptions) -> (Monitor, Stopped) {
     let stopped = Stopped::default();
     let (kept, progress) = (stopped.clone(), how.progress.as_ref().map(|progress| progress.clone_ref(py)));
     let times = Mutex::new((Instant::now(), Instant::now()));
@@ -148,7 +148,7 @@ type Ended<R> = std::thread::Result<(R, f64)>;
 /// Runs work on other threads; this one heeds signals meanwhile.
 fn beside<R: Send + 'static>(
     py: Python<'_>,
-    how: &How,
+    how: &WorkOptions,
     work: impl FnOnce(&Monitor) -> Ended<R> + Send + 'static,
 ) -> Result<(Ended<R>, Option<PyErr>), Failure> {
     let pool = pool(how.threads)?;

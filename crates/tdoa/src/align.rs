@@ -117,7 +117,7 @@ fn turn_in_plane<const D: usize>(pairs: impl Iterator<Item = ([f64; D], [f64; D]
     (from_fn(|k| from_fn(|l| rows[k][l])), norm(best))
 }
 
-/// The same in any dimension: U V^T of the singular value decomposition U S V^T of sum b a^T, and the
+/// The best turn in any dimension: U V^T of the singular value decomposition U S V^T of sum b a^T, and the
 /// trace of S (Schoenemann 1966). `None` where that sum is not finite.
 fn turn_by_svd<const D: usize>(pairs: impl Iterator<Item = ([f64; D], [f64; D])>) -> Option<([[f64; D]; D], f64)> {
     let mut products = Mat::<f64>::zeros(D, D);

@@ -39,7 +39,7 @@ impl<'a> Table<'a> {
         Table { common, name, header, keys, threads: common.threads, ranks }
     }
 
-    /// The same, whose rows are computed one after the other.
+    /// A table whose rows are computed one after the other.
     pub(super) fn one_by_one(self) -> Table<'a> {
         Table { threads: Some(1), ..self }
     }

@@ -141,9 +141,9 @@ pub struct ReducedTrial {
     pub oracle_exact: bool,
     /// How far its receivers are from the true ones after the best rigid alignment, root mean square, metres.
     pub oracle_rms: f64,
-    /// The same of the candidate that is nearest to the truth, refined.
+    /// How far the receivers of the candidate nearest to the truth are from the true ones, refined, metres.
     pub nearest_rms: f64,
-    /// The same of the candidate with the smallest residual, refined.
+    /// How far those of the candidate with the smallest residual are, refined, metres.
     pub best_rms: f64,
     /// Size of the true network, metres.
     pub size: f64,
@@ -155,7 +155,7 @@ pub struct ReducedTrial {
     pub candidates: usize,
     /// Relative distance of the nearest candidate from the oracle, as it comes from the solver.
     pub distance_raw: f64,
-    /// The same, refined.
+    /// Relative distance of the nearest candidate from the oracle, refined.
     pub distance: f64,
     /// Whether the one with the smallest residual is the oracle.
     pub best_is_oracle: bool,

@@ -42,12 +42,12 @@ impl Charts for OneChart {
 
 /// The rest of a segment, for each path from the point where it goes on: time `1` of the tracker is
 /// `t = from`.
-pub(super) struct Rests<'a> {
+pub(super) struct Remainders<'a> {
     pub(super) segment: &'a Segment,
     pub(super) from: &'a [f64],
 }
 
-impl ParameterPath for Rests<'_> {
+impl ParameterPath for Remainders<'_> {
     fn parameters(&self) -> usize {
         self.segment.parameters()
     }
@@ -81,7 +81,7 @@ impl ParameterPath for Rests<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::Rests;
+    use super::Remainders;
     use crate::homotopy::{ParameterPath, Segment};
     use num_complex::Complex64;
 
@@ -89,7 +89,7 @@ mod tests {
     fn the_rest_of_a_segment_is_on_the_segment() {
         let z = Complex64::new;
         let segment = Segment::new(&[z(1.0, 2.0), z(0.0, 1.0)], &[z(-0.5, 0.3), z(4.0, 0.0)]);
-        let rests = Rests { segment: &segment, from: &[1.0, 0.25] };
+        let rests = Remainders { segment: &segment, from: &[1.0, 0.25] };
         let (mut whole, mut rest) = ([z(0.0, 0.0); 8], [z(0.0, 0.0); 8]);
         segment.coefficients::<Complex64>(&[0], &[0.2], &mut whole);
         rests.coefficients::<Complex64>(&[0], &[0.2], &mut rest);

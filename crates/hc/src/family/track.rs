@@ -125,7 +125,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         }
     }
 
-    /// The same, for a family that states more than its equations.
+    /// A tracker of the fibres of a family that states more than its equations.
     ///
     /// [`track`](Self::track) then counts ends at which a factor vanishes, or that do not solve all equations, as failed
     /// ([`PathEnd::Degenerate`]); a path can jump to them. Of each orbit under a symmetry one path is tracked, and the others end at its images, with no steps

@@ -1,6 +1,6 @@
 //! One pass over paths of a fibre: they are tracked and judged, and replace the results of earlier passes.
 
-use super::charts::{Charts, OneChart, Rests};
+use super::charts::{Charts, OneChart, Remainders};
 use super::fibre::{Fibre, FibreOptions};
 use crate::distinct::Coincidences;
 use crate::homotopy::{ParameterPath, Segment};
@@ -306,7 +306,7 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
         which.clear();
         which.extend(0..numbers.len());
         paths.clear(self.fibre.dimension);
-        let rests = Rests { segment, from };
+        let rests = Remainders { segment, from };
         lanes.track(&rests, carried, which, &stricter::<C>(&self.options.tracker, level), monitor, paths);
         if chart == 0 {
             settle(refiner, self.target, paths);

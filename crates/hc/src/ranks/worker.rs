@@ -63,7 +63,7 @@ impl Worker<'_> {
         let found = std::thread::scope(|scope| {
             let _end = Done(&done);
             let (done, whole) = (&done, monitor.clone());
-            scope.spawn(move || Ear { ranks, job, whole, to }.listen(done));
+            scope.spawn(move || Listener { ranks, job, whole, to }.listen(done));
             work(&Worker { ranks, job, fingerprint, monitor, heard, next: RefCell::new(None) })
         });
         if let Err(error) = &found {
@@ -146,7 +146,7 @@ impl Worker<'_> {
 }
 
 /// Listens to rank 0.
-struct Ear<'a> {
+struct Listener<'a> {
     ranks: &'a Ranks<'a>,
     job: u64,
     /// Cancels the whole job.
@@ -154,7 +154,7 @@ struct Ear<'a> {
     to: Sender<Result<Heard, RanksError>>,
 }
 
-impl Ear<'_> {
+impl Listener<'_> {
     /// Passes on what concerns the job until that is over or `done`.
     fn listen(self, done: &AtomicBool) {
         let mut part = Monitor::watched();

@@ -5,7 +5,7 @@ pub(crate) mod families {
     /// Values of this size and below count as zero where a family demands that something does not
     /// vanish.
     pub(crate) const VANISHES: f64 = 1e-9;
-    /// The same at solutions that are singular, which are known to fewer digits.
+    /// Values of this size and below count as zero at singular solutions, which are known to fewer digits.
     pub(crate) const VANISHES_SINGULAR: f64 = 1e-5;
     /// A solution for other parameters may be one for all if its residual there is no more than this, and is one if
     /// Newton's method moves it by no more than this share, some units in the last place.

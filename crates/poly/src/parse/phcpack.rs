@@ -26,7 +26,7 @@ pub fn phcpack(text: &str) -> Result<System, ParseError> {
     phcpack_in(text, Arena::default(), Names::default())
 }
 
-/// The same, in an arena with some names declared.
+/// Reads PHCpack's format into an arena in which some names are declared.
 pub(super) fn phcpack_in(text: &str, mut arena: Arena, mut names: Names) -> Result<System, ParseError> {
     let (count, unknowns, body) = header(text)?;
     let mut equations = Vec::new();

@@ -12,7 +12,7 @@ pub(super) fn plain(text: &str) -> Result<System, ParseError> {
     plain_in(text, Arena::default(), Names::default())
 }
 
-/// The same, in an arena with some names declared.
+/// Reads a system in plain text into an arena in which some names are declared.
 pub(super) fn plain_in(text: &str, arena: Arena, names: Names) -> Result<System, ParseError> {
     let mut reader = Reader::new(text, arena, names)?;
     while *reader.tokens.current() != Token::End {

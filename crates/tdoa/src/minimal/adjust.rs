@@ -4,7 +4,7 @@ use super::check::check;
 use super::error::MinimalError;
 use super::normalised::Normalised;
 use super::options::MinimalOptions;
-use super::polish::Polisher;
+use super::polish::NetworkPolisher;
 use super::solution::Candidate;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -54,7 +54,7 @@ pub fn adjust<const D: usize>(
     let network = NetworkRefiner::new(&observations, f64::INFINITY, &hc::Monitor::default())
         .refine(network, &LEAST_SQUARES)
         .network;
-    let mut candidate = data.candidate(network, options, &mut Polisher::default());
+    let mut candidate = data.candidate(network, options, &mut NetworkPolisher::default());
     data.restore(&mut candidate.network);
     candidate.residual = candidate.network.rms(measured);
     Ok(candidate)

@@ -7,7 +7,7 @@ use super::linear::LeastSquares;
 use super::nearest::Nearest;
 use super::normalised::{Normalised, rank};
 use super::options::{MinimalOptions, MinimalStart};
-use super::polish::Polisher;
+use super::polish::NetworkPolisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::recharted::Recharted;
@@ -37,7 +37,7 @@ const CANDIDATES: usize = 64;
 /// A solver of one configuration; keeps its memory from call to call.
 pub(crate) struct Engine<F: Formulation, const D: usize = 2> {
     finder: RootFinder<F>,
-    roots: Roots<F, D>,
+    roots: RootMemory<F, D>,
     data: Normalised,
     /// The parameters of the last call.
     target: Vec<Complex64>,
@@ -55,11 +55,11 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
             start,
             from_scratch: None,
         };
-        let roots = Roots {
+        let roots = RootMemory {
             refiner: Refiner::new(F::system()),
             refined: Refined::default(),
             squares: LeastSquares::default(),
-            polisher: Polisher::default(),
+            polisher: NetworkPolisher::default(),
         };
         Engine { finder, roots, data: Normalised::default(), target: Vec::new() }
     }
@@ -206,11 +206,11 @@ impl<F: Formulation> RootFinder<F> {
 }
 
 /// What makes networks of roots; keeps its memory.
-struct Roots<F: Formulation, const D: usize> {
+struct RootMemory<F: Formulation, const D: usize> {
     refiner: Refiner<'static, F::System>,
     refined: Refined,
     squares: LeastSquares,
-    polisher: Polisher<D>,
+    polisher: NetworkPolisher<D>,
 }
 
 /// The networks of the real roots found so far.
@@ -219,7 +219,7 @@ struct RootNetworks<'a, F: Formulation, const D: usize> {
     data: &'a Normalised,
     options: &'a MinimalOptions,
     target: &'a [Complex64],
-    roots: &'a mut Roots<F, D>,
+    roots: &'a mut RootMemory<F, D>,
     counts: RootCounts,
     candidates: Vec<Candidate<D>>,
 }
@@ -232,7 +232,7 @@ impl<F: FormulationIn<D>, const D: usize> RootNetworks<'_, F, D> {
 
     /// Counts a root and, if it is real with real positions, adds its network.
     fn add(&mut self, root: &[Complex64]) {
-        let Roots { refiner, refined, squares, polisher } = &mut *self.roots;
+        let RootMemory { refiner, refined, squares, polisher } = &mut *self.roots;
         let Some((x, real)) = real_root::<F>(refiner, self.target, root, self.options.near_real, refined) else {
             return;
         };

@@ -4,7 +4,7 @@
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::{Normalised, rank};
 use crate::minimal::options::MinimalOptions;
-use crate::minimal::polish::Polisher;
+use crate::minimal::polish::NetworkPolisher;
 use crate::minimal::solution::{Candidate, MinimalSolution};
 use crate::minimal::subset::Subset;
 use crate::network::Network;
@@ -36,7 +36,7 @@ pub(crate) fn candidates_of_whole<'a, const D: usize>(
     options: &MinimalOptions,
 ) -> Vec<Candidate<D>> {
     let data = Normalised::new(measured);
-    let (mut squares, mut polisher) = (LeastSquares::default(), Polisher::default());
+    let (mut squares, mut polisher) = (LeastSquares::default(), NetworkPolisher::default());
     let mut whole = |network: &Network<D>| {
         let mut network = spread_out(measured, part, network, &mut squares)?;
         data.enter(&mut network);

@@ -2,7 +2,7 @@
 
 use super::options::MinimalOptions;
 use super::orders::{Order, Orders};
-use super::polish::Polisher;
+use super::polish::NetworkPolisher;
 use super::solution::Candidate;
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
@@ -69,7 +69,7 @@ impl Normalised {
         &self,
         mut network: Network<D>,
         options: &MinimalOptions,
-        polisher: &mut Polisher<D>,
+        polisher: &mut NetworkPolisher<D>,
     ) -> Candidate<D> {
         let condition = if options.polish { polisher.polish(&self.matrix, &mut network) } else { f64::NAN };
         let n = self.transmitters();

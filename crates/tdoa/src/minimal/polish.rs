@@ -9,13 +9,13 @@ const MAX_ITERATIONS: usize = 8;
 
 /// Scratch space; keeps its memory from call to call.
 #[derive(Default)]
-pub(crate) struct Polisher<const D: usize = 2> {
+pub(crate) struct NetworkPolisher<const D: usize = 2> {
     squares: LeastSquares,
     signs: Vec<f64>,
     next: Network<D>,
 }
 
-impl<const D: usize> Polisher<D> {
+impl<const D: usize> NetworkPolisher<D> {
     /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as
     /// they are at the start, and returns the condition number of that problem (columns of unit
     /// length, rigid motions excluded).

@@ -14,7 +14,7 @@ use super::planar::collinear::Collinear;
 use super::planar::four_five::FourFive;
 use super::planar::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::planar::three::{FiveFour, SixThree};
-use super::polish::Polisher;
+use super::polish::NetworkPolisher;
 use super::proofs::RootProofs;
 use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use super::subset::{self, Subset};
@@ -37,7 +37,7 @@ pub struct Solver {
     engines: Engines<2>,
     data: Normalised,
     squares: LeastSquares,
-    polisher: Polisher,
+    polisher: NetworkPolisher,
 }
 
 /// The method for a size.
@@ -222,7 +222,7 @@ fn seven_four(measured: &Pseudoranges, options: &MinimalOptions) -> MinimalSolut
         (counts.complex, counts.real) = (1, 1);
         if let Some(network) = by_receivers(data.parameters(), &p, &mut squares) {
             counts.positive_definite = 1;
-            let mut candidate = data.candidate(network, options, &mut Polisher::default());
+            let mut candidate = data.candidate(network, options, &mut NetworkPolisher::default());
             counts.physical = usize::from(candidate.physical);
             data.restore(&mut candidate.network);
             candidates.push(candidate);

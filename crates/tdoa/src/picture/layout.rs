@@ -79,7 +79,7 @@ impl Layout {
         Layout { views, magnified: 1.0, outside: 0, cut: 0, undrawn: 0, corner, foot }
     }
 
-    /// The same further down in the picture.
+    /// This layout further down in the picture.
     pub(super) fn down(mut self, pixels: f64) -> Self {
         self.views.iter_mut().for_each(|view| view.map.down(pixels));
         self.corner = self.corner.map(|r| Rectangle { top: r.top + pixels, bottom: r.bottom + pixels, ..r });

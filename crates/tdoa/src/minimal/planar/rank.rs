@@ -195,7 +195,7 @@ mod tests {
     use crate::minimal::MinimalOptions;
     use crate::minimal::linear::LeastSquares;
     use crate::minimal::normalised::Normalised;
-    use crate::minimal::polish::Polisher;
+    use crate::minimal::polish::NetworkPolisher;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
     fn data(receivers: usize, transmitters: usize, seed: u64) -> (Vec<f64>, Normalised) {
@@ -227,7 +227,7 @@ mod tests {
             let found = offsets_of_four(data.parameters(), &mut squares).unwrap();
             good += usize::from(error(&found, &truth) < 1e-6);
             let network = by_receivers(data.parameters(), &truth, &mut squares).unwrap();
-            let candidate = data.candidate(network, &MinimalOptions::default(), &mut Polisher::default());
+            let candidate = data.candidate(network, &MinimalOptions::default(), &mut NetworkPolisher::default());
             assert!(candidate.residual < 1e-12, "seed {seed}: {}", candidate.residual);
         }
         // Some of fifty networks are near to a degenerate one.
@@ -240,7 +240,7 @@ mod tests {
         for seed in 0..50 {
             let (truth, data) = data(5, 6, seed);
             let network = by_transmitters(data.parameters(), &truth, &mut squares).unwrap();
-            let candidate = data.candidate(network, &MinimalOptions::default(), &mut Polisher::default());
+            let candidate = data.candidate(network, &MinimalOptions::default(), &mut NetworkPolisher::default());
             assert!(candidate.residual < 1e-12, "seed {seed}: {}", candidate.residual);
         }
     }
