@@ -80,22 +80,27 @@ fn coordinates<T, const D: usize>(all: Vec<T>) -> Result<[T; D], Failure> {
 }
 
 /// The JSON of the program: offsets in seconds too, where the measurements were times.
-#[derive(Serialize)]
-#[serde(bound = "Calibration<D>: Serialize")]
-struct Report<'a, const D: usize> {
+#[derive(Serialize, Deserialize)]
+#[serde(bound(serialize = "Calibration<D>: Serialize", deserialize = "Calibration<D>: Deserialize<'de>"))]
+struct Report<const D: usize> {
+    #[serde(default = "format")]
     format: u32,
     #[serde(flatten)]
-    calibration: &'a Calibration<D>,
+    calibration: Calibration<D>,
     #[serde(skip_serializing_if = "Option::is_none")]
     units: Option<Unit>,
     #[serde(skip_serializing_if = "Option::is_none")]
     offsets_in_units: Option<Vec<Option<f64>>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Unit {
-    name: &'static str,
+    name: String,
     metres: f64,
+}
+
+fn format() -> u32 {
+    FORMAT
 }
 
 /// Calibrates, and gives the JSON that the program writes; as partial result a dict of the best
@@ -149,13 +154,9 @@ where
     }
     let metres = speed.map(|speed| speed * calibration.speed.map_or(1.0, |found| found.factor));
     let offsets = |metres: f64| calibration.offsets.iter().map(|o| o.map(|o| o / metres)).collect();
-    let report = Report {
-        format: FORMAT,
-        calibration: &calibration,
-        units: metres.map(|metres| Unit { name: "s", metres }),
-        offsets_in_units: metres.map(offsets),
-    };
-    json::text(&report)
+    let offsets_in_units = metres.map(offsets);
+    let units = metres.map(|metres| Unit { name: "s".to_string(), metres });
+    json::text(&Report { format: FORMAT, calibration, units, offsets_in_units })
 }
 
 /// What a calibration leaves that was stopped; why there is none, for all others.
@@ -190,6 +191,7 @@ trait Shown {
     fn html(&self) -> String;
     fn picture(&self) -> String;
     fn summary(&self) -> String;
+    fn nodes(&self) -> String;
     fn deviation(&self) -> String;
     fn magnification(&self) -> f64;
     fn has_systematic_errors(&self) -> bool;
@@ -206,6 +208,10 @@ impl<const D: usize> Shown for Calibration<D> {
 
     fn summary(&self) -> String {
         tdoa::summary::summary(self)
+    }
+
+    fn nodes(&self) -> String {
+        tdoa::node_table::node_table(self)
     }
 
     fn deviation(&self) -> String {
@@ -255,6 +261,51 @@ pub(crate) fn calibration_svg(json: &str) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn calibration_summary(json: &str) -> PyResult<String> {
     guarded(|| Ok(parsed(json)?.summary()))
+}
+
+/// The table of the nodes as CSV, from the JSON of a calibration.
+#[pyfunction]
+pub(crate) fn calibration_nodes(json: &str) -> PyResult<String> {
+    guarded(|| Ok(parsed(json)?.nodes()))
+}
+
+/// The JSON of a calibration that is compared with the true positions of receivers and transmitters, as many as there are,
+/// and in the frame of these, unless known positions have given it a frame.
+#[pyfunction]
+pub(crate) fn calibration_compared(
+    json: &str,
+    receivers: Vec<Option<Vec<f64>>>,
+    transmitters: Vec<Option<Vec<f64>>>,
+    keeps_frame: bool,
+) -> PyResult<String> {
+    guarded(|| match read::<Head>(json)?.dimensions {
+        Some(3) => compared(read::<Report<3>>(json)?, receivers, transmitters, keeps_frame),
+        _ => compared(read::<Report<2>>(json)?, receivers, transmitters, keeps_frame),
+    })
+}
+
+fn compared<const D: usize>(
+    mut report: Report<D>,
+    receivers: Vec<Option<Vec<f64>>>,
+    transmitters: Vec<Option<Vec<f64>>>,
+    keeps_frame: bool,
+) -> Result<String, Failure>
+where
+    Calibration<D>: Serialize,
+{
+    let points = |all: Vec<Option<Vec<f64>>>| -> Result<Vec<Option<[f64; D]>>, Failure> {
+        all.into_iter().map(|position| position.map(coordinates).transpose()).collect()
+    };
+    let (receivers, transmitters) = (points(receivers)?, points(transmitters)?);
+    report.calibration.compare_all(&receivers, &transmitters);
+    if report.calibration.truth.is_none() {
+        let problem = "two receivers at least must have a place and a true position to compare them";
+        return Err(Failure::Input(problem.to_string()));
+    }
+    if !keeps_frame {
+        report.calibration.move_to_frame_of(&receivers);
+    }
+    json::text(&report)
 }
 
 /// The standard deviation of the measurements in words, by how much ellipses are to be drawn larger

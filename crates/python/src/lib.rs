@@ -20,7 +20,10 @@ mod work;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::calibration::{calibrate, calibration_html, calibration_style, calibration_summary, calibration_svg};
+    use crate::calibration::{
+        calibrate, calibration_compared, calibration_html, calibration_nodes, calibration_style, calibration_summary,
+        calibration_svg,
+    };
     #[pymodule_export]
     use crate::certify::{certify, mixed_volume};
     #[pymodule_export]

@@ -44,8 +44,37 @@ def test_a_room(dimensions, tmp_path):
         ax = pytest.importorskip("matplotlib.pyplot").subplots()[1]
         found.plot(ax, view=axes)
         assert (ax.get_xlabel(), ax.get_ylabel()) == (f"{axes[0]}, m", f"{axes[1]}, m")
-    with pytest.raises(hc.InputError, match="view must be xy or xz or yz"):
+    with pytest.raises(hc.InputError, match="view must be xy or xz or yz or 3d"):
         found.plot(view="zz")
+    ax = found.plot(view="3d")
+    assert ax.name == "3d" and ax.get_zlabel() == "z, m" and len(ax.collections) == 42, "an ellipsoid a node"
+    receivers = next(line for line in ax.lines if line.get_marker() == "^")
+    assert np.allclose(np.array(receivers.get_data_3d()).T, found.receivers)
+    with pytest.raises(hc.InputError, match='not of projection "3d"'):
+        found.plot(ax)
+
+
+def test_comparison_with_the_truth():
+    made = room()
+    found = tdoa.calibrate(made.pseudoranges, dimensions=3)
+    assert found.truth is None
+    beside = found.compared(made.receivers, made.transmitters)
+    # In the frame of the truth, nodes are where they are, but for errors of some millimetres.
+    off = np.linalg.norm(beside.receivers - made.receivers, axis=1)
+    assert off.max() < 0.1 and np.sqrt((off**2).mean()) == pytest.approx(beside.truth["receiver_rms"], rel=1e-6)
+    assert beside.truth["receivers"] == 12 and 0 < beside.truth["transmitter_median"] < 0.1
+    assert np.allclose(np.trace(beside.covariance, axis1=1, axis2=2), np.trace(found.covariance, axis1=1, axis2=2))
+    assert np.array_equal(beside.residuals, found.residuals) and beside.data["format"] == found.data["format"]
+    by_name = found.compared(dict(zip(found.receiver_names[:5], made.receivers)))
+    assert by_name.truth["receivers"] == 5 and "transmitter_median" not in by_name.truth
+    partly = np.where(np.arange(12)[:, None] < 5, made.receivers, np.nan)
+    assert found.compared(partly) == by_name
+    # Anchors have given a frame already.
+    held = tdoa.calibrate(made.pseudoranges, dimensions=3, anchors=made.receivers + 7.0)
+    assert np.array_equal(held.compared(made.receivers).receivers, held.receivers)
+    for wrong in (made.receivers[:3], made.receivers[:, :2], {"r1": 3.0}, {"nobody": (0, 0, 0)}, "abc", partly * np.nan):
+        with pytest.raises(hc.InputError):
+            found.compared(wrong)
 
 
 def test_planar_networks_stay_planar():

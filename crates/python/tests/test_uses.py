@@ -313,6 +313,19 @@ def test_bounds():
             tdoa.cramer_rao(*arguments)
 
 
+def test_nodes_as_a_data_frame():
+    pandas = pytest.importorskip("pandas")
+    made = tdoa.simulate(8, 12, noise=0.02, outliers=0.05, seed=6)
+    names = ["NA", "007", *(f"r{k}" for k in range(6))]
+    found = tdoa.calibrate(pandas.DataFrame(made.pseudoranges, index=names))
+    nodes = found.to_dataframe()
+    assert list(nodes["name"]) == [*found.receiver_names, *found.transmitter_names]
+    assert list(nodes["kind"]) == ["receiver"] * 8 + ["transmitter"] * 12
+    assert np.array_equal(nodes[["x", "y"]][:8].to_numpy(), found.receivers)
+    assert np.array_equal(nodes["offset"][8:].to_numpy(), found.offsets) and nodes["offset"][:8].isna().all()
+    assert nodes["outliers"].sum() == 2 * (~found.inliers & np.isfinite(found.residuals)).sum()
+
+
 def test_plots(tmp_path):
     pytest.importorskip("matplotlib")
     made = tdoa.simulate(8, 12, noise=0.02, outliers=0.05, seed=6)
@@ -331,6 +344,9 @@ def test_plots(tmp_path):
     assert held.data["anchored"][:3] == [True] * 3
     assert np.allclose(held.receivers[:3], made.receivers[:3])
     held.plot()
+    beside = found.compared(made.receivers).plot()
+    true = [line.get_xydata() for line in beside.lines if line.get_marker() == "x"]
+    assert len(true) == 1 and np.allclose(true[0], made.receivers)
     import matplotlib.pyplot as pyplot
 
     pyplot.close("all")

@@ -22,7 +22,7 @@ use tdoa::{
 pub(crate) use arguments::Arguments;
 use arguments::{Delays, Dimensions, Side};
 
-use crate::frame::{self, Frame};
+use crate::frame::Frame;
 use crate::known::{self, Truth};
 use crate::partial;
 use crate::provenance;
@@ -250,7 +250,7 @@ impl Task<'_> {
             }
             // Anchors and --frame are a frame that somebody wants.
             if arguments.anchors.is_none() && self.frame.is_none() {
-                frame::of_truth(&mut calibration, receivers);
+                calibration.move_to_frame_of(receivers);
             }
         }
         if let Some(frame) = &self.frame {

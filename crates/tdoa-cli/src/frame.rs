@@ -1,6 +1,6 @@
-//! The frame of a result: the one that three nodes fix, in space three or four, or that of the truth.
+//! The frame of a result that three nodes fix, in space three or four.
 
-use tdoa::align::{Transform, align, frame};
+use tdoa::align::{Transform, frame};
 use tdoa::{Calibration, Network, Pseudoranges};
 
 use crate::Failure;
@@ -95,21 +95,6 @@ impl Frame {
             let count = if self.is_spatial() { "four nodes lie in one plane" } else { "three nodes lie in one line" };
             Failure::Undetermined(format!("--frame: the {count} or in one place; choose others"))
         })
-    }
-}
-
-/// Moves a calibration that was compared with the true positions of receivers into the frame of the truth, in which
-/// above is above.
-///
-/// The true positions were moved onto the network. What moves them back is unique where they span the space, and
-/// otherwise leaves open only how the network is turned about them. Transmitters do not take part: the network stays
-/// the same to the bit, whether they are known or not.
-pub(crate) fn of_truth<const D: usize>(calibration: &mut Calibration<D>, receivers: &[Option<[f64; D]>]) {
-    let Some(truth) = &calibration.truth else { return };
-    let pairs = truth.positions.iter().zip(receivers);
-    let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(moved, known)| Some(((*moved)?, (*known)?))).unzip();
-    if let Some(back) = align(&from, &to, false) {
-        calibration.transform(&back.transform);
     }
 }
 

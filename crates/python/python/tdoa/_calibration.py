@@ -8,6 +8,8 @@ import numpy as np
 
 from hc import InputError, _native
 
+from ._tables import real_matrix
+
 
 class Alternative:
     """Another network that explains the measurements about as well.
@@ -173,18 +175,91 @@ class Calibration:
         """Whether the measurements fit a network of these dimensions and the known positions, and determine where most nodes are."""
         return self.data.get("fits", self.data["planar"]) and self.data["determined"] and self.data.get("anchors_agree", True)
 
+    @property
+    def truth(self):
+        """What `compared` has found: errors in metres and the true positions in this frame, as in the JSON; None before."""
+        return self.data.get("truth")
+
+    def compared(self, receivers, transmitters=None):
+        """This calibration beside true positions, and in their frame, unless anchors gave it one.
+
+        Parameters
+        ----------
+        receivers : array_like of float, shape (m, d), or dict of name to position
+            True positions in metres; NaN, or no entry, where they are unknown.
+        transmitters : array_like of float, shape (n, d), or dict of name to position, optional
+            True positions of transmitters.
+
+        Returns
+        -------
+        Calibration
+            With `truth`: after the best rigid alignment of the receivers (mirror images allowed), `receiver_rms` in metres,
+            `receiver_rms_scaled` with a common `scale` fitted as well, how many `receivers` were compared, and the
+            `transmitter_median`. Pictures show the true positions.
+
+        Raises
+        ------
+        hc.InputError
+            If a shape or a name does not fit, or fewer than two receivers can be compared.
+        """
+        known = [
+            self._known("receivers", receivers, self.receiver_names),
+            [] if transmitters is None else self._known("transmitters", transmitters, self.transmitter_names),
+        ]
+        keeps_frame = not self.gauge.startswith("inner constraint")
+        return Calibration(_native.calibration_compared(self._text, *known, keeps_frame))
+
+    def _known(self, kind, given, names):
+        """Known positions in the order of the names; None where there is none."""
+        if hasattr(given, "keys"):
+            strange = [str(name) for name in given.keys() if str(name) not in names]
+            if strange:
+                raise InputError(f"none of the {kind} is named {', '.join(strange[:8])}; they are {', '.join(names[:8])}")
+            rows = np.full((len(names), self.dimensions), np.nan)
+            for name in given.keys():
+                try:
+                    rows[names.index(str(name))] = np.asarray(given[name], dtype=float).reshape(self.dimensions)
+                except (TypeError, ValueError):
+                    raise InputError(f"the true position of {name} must be {self.dimensions} numbers, not {given[name]!r}") from None
+        else:
+            rows = real_matrix(kind, given)
+        if rows.shape != (len(names), self.dimensions):
+            raise InputError(f"true {kind} must have shape {(len(names), self.dimensions)}, not {rows.shape}")
+        return [row.tolist() if np.isfinite(row).all() else None for row in rows]
+
+    def to_dataframe(self):
+        """The nodes as a pandas.DataFrame, the table that `tdoa calibrate --nodes` writes.
+
+        One row a node, receivers first: `kind`, `name`, coordinates, their standard deviations and covariances (with systematic errors
+        where these are significant), `offset`, `std_offset`, and how many `measurements` it has and how many are `outliers`. Lengths in metres, NaN
+        where nothing is determined.
+        """
+        import io
+
+        try:
+            import pandas
+        except ImportError:
+            raise InputError("to_dataframe needs pandas: pip install pandas") from None
+        table = io.StringIO(_native.calibration_nodes(self._text))
+        # A node may be named NA or 007.
+        frame = pandas.read_csv(table, dtype=str, keep_default_na=False)
+        for column in frame.columns[2:]:
+            kind = int if column in ("measurements", "outliers") else float
+            frame[column] = [kind(cell) if cell else np.nan for cell in frame[column]]
+        return frame
+
     def plot(self, ax=None, *, names=True, view="xy"):
-        """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines. In space, one view of it.
+        """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines, true positions if it was `compared`.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where; a new figure by default.
+            Where; a new figure by default. Of projection "3d" for the view "3d".
         names : bool
             Whether nodes get their names.
-        view : {"xy", "xz", "yz"}
-            The coordinates to the right and upwards: from above by default, "xz" from the front, "yz" from the side. Ellipses are the shadows
-            of 95 % ellipsoids. In the plane there is "xy" alone.
+        view : {"xy", "xz", "yz", "3d"}
+            The coordinates to the right and upwards: from above by default, "xz" from the front, "yz" from the side; ellipses are the shadows
+            of 95 % ellipsoids. "3d" shows the ellipsoids from anywhere. In the plane there is "xy" alone.
 
         Returns
         -------

@@ -106,9 +106,25 @@ fn deviation<const D: usize>(covariance: &[[f64; D]; D]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::agree_by_chance;
+    use super::{WeakNodes, agree_by_chance};
     use crate::align::align;
     use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+    #[test]
+    fn most_are_open_by_receivers_or_by_all_nodes() {
+        let of = |open: usize, transmitters: usize| {
+            let weak = WeakNodes {
+                receivers: (0..open).collect(),
+                transmitters: (0..transmitters).collect(),
+                open,
+                all: 9,
+                heard: 40,
+            };
+            weak.are_most()
+        };
+        // Sources far outside leave an array as it is; with receivers open among them, nothing is told.
+        assert_eq!([of(0, 40), of(2, 40), of(3, 40), of(4, 10), of(5, 0)], [false, false, true, false, true]);
+    }
 
     #[test]
     fn chance_is_that_of_a_binomial_distribution() {

@@ -38,4 +38,17 @@ impl<const D: usize> Calibration<D> {
             transmitter_positions,
         });
     }
+    /// Moves to the frame of the true positions, once it has been compared with those of the receivers.
+    ///
+    /// [`compare`](Self::compare) moved them onto the network. What moves them back is unique where they span the space,
+    /// and otherwise leaves open only how the network is turned about them. Transmitters do not take part: the network
+    /// stays the same to the bit, whether they are known or not.
+    pub fn move_to_frame_of(&mut self, receivers: &[Option<[f64; D]>]) {
+        let Some(truth) = &self.truth else { return };
+        let pairs = truth.positions.iter().zip(receivers);
+        let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(moved, known)| Some(((*moved)?, (*known)?))).unzip();
+        if let Some(back) = align(&from, &to, false) {
+            self.transform(&back.transform);
+        }
+    }
 }
