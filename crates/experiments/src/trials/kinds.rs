@@ -250,6 +250,8 @@ pub struct Outcome {
     /// Likewise of least squares that starts at the true receivers and has measurements with noise alone, in the plane
     /// where all nodes lie in one, metres; `None` if it finds no network.
     pub oracle: Option<f64>,
+    /// Root mean square error of the receivers' heights, where heights were given to the calibration, metres.
+    pub heights: Option<f64>,
     /// Size of the true network, metres.
     pub size: f64,
     /// 95 % ellipses of receivers that hold the truth, and their number.
@@ -257,14 +259,19 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the receivers are not where they are said to be.
+    /// Whether the receivers are not where they are said to be, or not as high as they were known to be.
     pub fn is_wrong(&self) -> bool {
-        self.error.is_some_and(|error| error > self.near())
+        self.error.is_some_and(|error| error > self.near()) || self.is_tilted()
+    }
+
+    /// Whether known heights have not turned it upright.
+    fn is_tilted(&self) -> bool {
+        self.heights.is_some_and(|error| error > self.near())
     }
 
     /// Whether the receivers are elsewhere than the network, its mirror images and all alternatives have them.
     pub fn is_unlisted(&self) -> bool {
-        self.nearest.is_some_and(|error| error > self.near())
+        self.nearest.is_some_and(|error| error > self.near()) || self.is_tilted()
     }
 
     /// The largest error of a right network, metres.
@@ -287,7 +294,10 @@ pub fn outcome(instance: &Instance) -> Outcome {
         found.ok().and_then(|found| apart(&found.receivers, &known))
     };
     match calibrate_either(measured, options, &Monitor::default()) {
-        Ok(Calibrated::Space(found)) => outcome.of(&found, &known, &known),
+        Ok(Calibrated::Space(found)) => {
+            let heights = (!options.positions.is_empty()).then(|| of_heights(&found.receivers, truth));
+            Outcome { heights, ..outcome.of(&found, &known, &known) }
+        }
         // As far as the plane tells: the truth seen from above.
         Ok(Calibrated::Plane(found)) => outcome.of(&found, &known, &above),
         Err(CalibratedError::Plane(_) | CalibratedError::Space(_)) => outcome,
@@ -327,6 +337,13 @@ impl Outcome {
             ..self
         }
     }
+}
+
+/// Root mean square difference of the receivers' heights from the true ones.
+fn of_heights(receivers: &[Option<[f64; 3]>], truth: &Network<3>) -> f64 {
+    let squares = receivers.iter().zip(&truth.receivers).filter_map(|(p, q)| Some((p.as_ref()?[2] - q[2]).powi(2)));
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    (sum / f64::max(count, 1.0)).sqrt()
 }
 
 /// Points evenly distributed in a box from the origin to this corner.

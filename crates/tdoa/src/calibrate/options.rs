@@ -167,6 +167,15 @@ impl<const D: usize> MeasuredPosition<D> {
 }
 
 impl<const D: usize> CalibrateOptions<D> {
+    /// Whether all that is known of positions are heights, of three nodes or more.
+    pub(crate) fn knows_heights_alone(&self) -> bool {
+        let is_height = |known: &MeasuredPosition<D>| (0..D).all(|k| known.position[k].is_some() == (k == 2));
+        D == 3
+            && self.anchors.iter().all(Option::is_none)
+            && self.positions.len() >= 3
+            && self.positions.iter().all(is_height)
+    }
+
     /// The defaults. `CalibrateOptions::default()` are those of the plane, `CalibrateOptions::<3>::new()`
     /// those of space.
     pub fn new() -> Self {

@@ -75,7 +75,12 @@ impl<'a, const D: usize> Draft<'a, D> {
     pub(crate) fn judged(self) -> Result<Calibration<D>, CalibrateError<D>> {
         let draft = self.then(Draft::settle)?;
         let found = draft.state.judge(&draft.input).and_then(|judged| draft.state.report(&draft.input, &judged));
-        found.map_err(|error| draft.with_the_best_so_far(error))
+        let mut found = found.map_err(|error| draft.with_the_best_so_far(error))?;
+        let options = draft.state.options;
+        if options.knows_heights_alone() {
+            found.stand_upright(&options.positions, options.alternative_margin);
+        }
+        Ok(found)
     }
 
     /// The draft after a step.

@@ -70,7 +70,7 @@ pub(crate) fn validate<const D: usize>(
             return bad(format!("the standard deviation of the position of {name} must not be negative, not {wrong}"));
         }
     }
-    if !options.positions.is_empty() {
+    if !options.positions.is_empty() && !options.knows_heights_alone() {
         let whole = options.positions.iter().filter_map(MeasuredPosition::whole);
         let whole: Vec<[f64; D]> = whole.chain(options.anchors.iter().flatten().copied()).collect();
         if !fix_a_frame(&whole) {
@@ -78,7 +78,9 @@ pub(crate) fn validate<const D: usize>(
                 "both coordinates of two nodes in different places are needed; single coordinates come beside these"
                     .to_string()
             } else {
-                "all coordinates of three nodes that are not in one line are needed; single coordinates come beside these".to_string()
+                "all coordinates of three nodes that are not in one line are needed, or the heights of three and nothing else; single coordinates \
+                 come beside these"
+                    .to_string()
             });
         }
     }
@@ -113,7 +115,9 @@ fn fix_a_frame<const D: usize>(points: &[[f64; D]]) -> bool {
 impl<const D: usize> Anchors<D> {
     /// The anchors among the usable receivers; `None` if none are asked for.
     pub(crate) fn new(usable: &Usable, options: &CalibrateOptions<D>) -> Result<Option<Anchors<D>>, CalibrateError<D>> {
-        if options.anchors.iter().all(Option::is_none) && options.positions.is_empty() {
+        let nothing = options.anchors.iter().all(Option::is_none) && options.positions.is_empty();
+        // Heights alone turn the network once it is found.
+        if nothing || options.knows_heights_alone() {
             return Ok(None);
         }
         let given = |i: &usize| options.anchors.get(*i).copied().flatten();

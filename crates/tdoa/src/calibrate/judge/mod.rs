@@ -8,4 +8,5 @@ pub(crate) mod lines_and_planes;
 pub(crate) mod mirror_images;
 pub(crate) mod neighbours;
 pub(crate) mod orientation;
+pub(crate) mod upright;
 pub(crate) mod weak_nodes;

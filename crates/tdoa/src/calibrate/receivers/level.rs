@@ -7,7 +7,10 @@ use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::state::State;
 use crate::flatness::levelled;
 use crate::network::Network;
-use crate::refine::{Heights, RefinedNetwork};
+use crate::observations::Observations;
+use crate::refine::{Cancelled, Heights, RefinedNetwork};
+#[cfg(feature = "threads")]
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Share of the heights that the measurements tell, above which they need no expectation.
 const TOLD: f64 = 0.95;
@@ -34,6 +37,9 @@ const CLOSE: f64 = 5.0;
 
 /// Heights that a plane and its tilt take up.
 const PLANE: f64 = 3.0;
+
+/// Heights with the logarithm of their marginal likelihood, if there is one, and that of the likeliest planar network.
+type Mode<const D: usize> = (Option<(f64, Heights<D>)>, f64);
 
 impl<const D: usize> State<'_, D> {
     /// Refines with heights that are expected to be near the plane of the nodes, where the measurements do not tell
@@ -81,25 +87,37 @@ impl<const D: usize> State<'_, D> {
         let sigma = known.unwrap_or(deviation);
         let limit = options.inlier_threshold * sigma;
         let width = self.ranked[0].network.size();
+        let starts = self.ranked.iter().take(MODES).filter_map(|RefinedNetwork { network, .. }| {
+            let kept = observations.subset(|o| o.residual(network).abs() <= limit);
+            let motion = levelled(network).filter(|_| kept.len() > kept.unknowns())?;
+            let level = motion.apply_network(network);
+            Some([(kept.clone(), one_sided(&level)), (kept, level)])
+        });
+        let starts: Vec<(Observations<D>, Network<D>)> = starts.flatten().collect();
+        let mode = |(kept, start): &(Observations<D>, Network<D>)| -> Result<Option<Mode<D>>, Cancelled> {
+            let found = Heights::of(kept, start, known, sigma, monitor)?;
+            // Of networks that the measurements do not determine, likelihoods say little.
+            let Some(heights) = found.filter(|heights| heights.loosest <= LOOSE * width) else { return Ok(None) };
+            let evidence = heights.evidence(observations, known, width, monitor)?;
+            let evidence = evidence.map(|evidence| evidence + heights.log_prior(width));
+            let mut of_plane = f64::NEG_INFINITY;
+            for factor in WIDER {
+                let flat = heights.flat(observations, factor * heights.deviation, monitor)?;
+                let plane = flat.evidence(observations, known, width, monitor)?;
+                of_plane = of_plane.max(plane.unwrap_or(f64::NEG_INFINITY));
+            }
+            Ok(Some((evidence.map(|evidence| (evidence, heights)), of_plane)))
+        };
+        #[cfg(feature = "threads")]
+        let found: Vec<Result<Option<Mode<D>>, Cancelled>> = starts.par_iter().map(mode).collect();
+        #[cfg(not(feature = "threads"))]
+        let found: Vec<Result<Option<Mode<D>>, Cancelled>> = starts.iter().map(mode).collect();
         let mut modes: Vec<(f64, Heights<D>)> = Vec::new();
         let mut of_plane = f64::NEG_INFINITY;
-        for RefinedNetwork { network, .. } in self.ranked.iter().take(MODES) {
-            let kept = observations.subset(|o| o.residual(network).abs() <= limit);
-            let Some(motion) = levelled(network).filter(|_| kept.len() > kept.unknowns()) else { continue };
-            let level = motion.apply_network(network);
-            for start in [one_sided(&level), level] {
-                let found = Heights::of(&kept, &start, known, sigma, monitor)?;
-                // Of networks that the measurements do not determine, likelihoods say little.
-                let Some(heights) = found.filter(|heights| heights.loosest <= LOOSE * width) else { continue };
-                let evidence = heights.evidence(observations, known, width, monitor)?;
-                let evidence = evidence.map(|evidence| evidence + heights.log_prior(width));
-                for factor in WIDER {
-                    let flat = heights.flat(observations, factor * heights.deviation, monitor)?;
-                    let plane = flat.evidence(observations, known, width, monitor)?;
-                    of_plane = of_plane.max(plane.unwrap_or(f64::NEG_INFINITY));
-                }
-                modes.extend(evidence.map(|evidence| (evidence, heights)));
-            }
+        for mode in found {
+            let Some((heights, plane)) = mode? else { continue };
+            modes.extend(heights);
+            of_plane = of_plane.max(plane);
         }
         modes.sort_by(|a, b| b.0.total_cmp(&a.0));
         // Of those that are about as likely the one that fits best.
