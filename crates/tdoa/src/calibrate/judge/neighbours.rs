@@ -32,6 +32,8 @@ pub(crate) enum Reason<const D: usize> {
     Found,
     /// An error of a receiver, without which the measurements fit it.
     Error(Fault<D>),
+    /// A delay of every receiver, which leaves the measurements this deviation.
+    Delays { deviation: f64 },
     /// So many of all outliers are late: it is the one of one-sided errors.
     Late { late: usize, all: usize },
 }

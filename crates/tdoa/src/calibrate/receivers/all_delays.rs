@@ -1,6 +1,7 @@
 //! A delay of every receiver, as of clocks that were started apart, estimated together with the network.
 
 use crate::calibrate::input::middle_delays::middle_delays;
+use crate::calibrate::judge::neighbours::{Neighbour, Reason};
 use crate::calibrate::options::{CalibrateError, check};
 use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind, price};
 use crate::calibrate::receivers::take_out::{Estimated, STEPS, moved};
@@ -86,7 +87,7 @@ impl<const D: usize> State<'_, D> {
     }
 
     /// Takes a delay of every receiver out where that makes the measurements likelier than the errors of some that are
-    /// taken out so far, each at its price. `before` are the networks without anything taken out.
+    /// taken out so far, each at its price; where it nearly does, its network is a neighbour. `before` are the networks without anything taken out.
     pub(crate) fn prefer_delays_of_all(&mut self, before: &[RefinedNetwork<D>]) -> Result<(), CalibrateError<D>> {
         let receivers = self.measured.receivers();
         if self.measured.are_ranges() {
@@ -110,14 +111,18 @@ impl<const D: usize> State<'_, D> {
         let price = |errors: usize, are_delays_of_all: bool| price(errors, are_delays_of_all, receivers, whole.len());
         let some =
             density(&self.observations, &self.ranked[0].network, self.deviation) - price(self.taken.len(), false);
-        let is_likelier = |(faults, refined, deviation): &Estimated<D>| {
-            density(&self.observe(faults), &refined.network, *deviation) - price(faults.len(), true) > some
-        };
         let with_delays = |of: &RefinedNetwork<D>| self.estimate(of.clone(), self.deviation, unknown.clone());
-        let mut all = vec![with_delays(&before[0])?];
-        if !is_likelier(&all[0]) {
+        let (faults, refined, deviation) = with_delays(&before[0])?;
+        let lead = density(&self.observe(&faults), &refined.network, deviation) - price(faults.len(), true) - some;
+        if lead <= 0.0 {
+            // Nearly as likely, they are another answer.
+            if -lead <= self.options.alternative_margin {
+                let reason = Reason::Delays { deviation };
+                self.neighbours.extend(Neighbour::new(&refined.network, -lead, reason, &self.ranked[0].network));
+            }
             return Ok(());
         }
+        let mut all = vec![(faults, refined, deviation)];
         for other in before.iter().take(CANDIDATES).skip(1) {
             all.push(with_delays(other)?);
         }
@@ -227,8 +232,10 @@ fn delay<const D: usize>(receiver: usize, size: f64) -> Fault<D> {
 mod tests {
     use super::{Fault, ReceiverErrorKind, State};
     use crate::align::align;
+    use crate::bordered::Bordered;
+    use crate::points::{dot, minus};
     use crate::refine::RefinedNetwork;
-    use crate::{CalibrateOptions, Layout, ReceiverDelays, SimulateOptions, calibrate, simulate};
+    use crate::{CalibrateOptions, Calibration, Layout, ReceiverDelays, SimulateOptions, calibrate, simulate};
     use hc::Monitor;
 
     /// Whether exact measurements of seven receivers are more than the unknowns, with a delay of each receiver but
@@ -275,6 +282,34 @@ mod tests {
             );
             assert!(error < 1.1 * known, "seed {seed}: {error} {known}");
             assert!(run(0.0, ReceiverDelays::Auto).0.receiver_errors.is_empty(), "seed {seed}");
+        }
+    }
+
+    /// Delays of five times the noise, most of which the geometry takes up: those of some receivers seem enough.
+    #[test]
+    fn ellipsoids_reach_the_network_with_delays_of_all_where_these_are_nearly_as_likely() {
+        for seed in [1, 11] {
+            let mut made = SimulateOptions::<3>::new();
+            (made.receivers, made.transmitters, made.noise, made.delays, made.seed) = (10, 30, 0.01, 0.05, seed);
+            made.layout = Layout::Room { extent: [10.0, 8.0, 3.0] };
+            let made = simulate(&made).unwrap();
+            let found = |receiver_delays| {
+                let options = CalibrateOptions { receiver_delays, ..CalibrateOptions::<3>::new() };
+                calibrate(&made.pseudoranges, &options).unwrap()
+            };
+            let places = |of: &Calibration<3>| of.receivers.iter().flatten().copied().collect::<Vec<_>>();
+            let (some, all) = (found(ReceiverDelays::Auto), found(ReceiverDelays::All));
+            assert!(some.receiver_errors.len() < 10, "seed {seed}");
+            let (near, far) = (places(&some), places(&all));
+            let onto = align(&far, &near, false).unwrap().transform;
+            for (i, (p, q)) in near.iter().zip(&far).enumerate() {
+                let off = minus(onto.apply(*q), *p);
+                let rows = some.trusted_covariances()[0][i].unwrap();
+                let factor = Bordered { rows, border: [0.0; 3], corner: 1.0 }.cholesky(1.0, 0.0).unwrap();
+                let square = dot(off, factor.solve((off, 0.0)).0);
+                // A thousandth for what the two runs differ in the last steps.
+                assert!(square.sqrt() < 1.001 * some.ellipse_radius.unwrap(), "seed {seed}, receiver {i}: {square}");
+            }
         }
     }
 }

@@ -214,7 +214,8 @@ pub struct Alternative<const D: usize = 2> {
     pub residual: f64,
     /// How much less likely the measurements are than under the best network (natural logarithm).
     /// If this network lacks an error of a receiver, it says how much less evidence the
-    /// measurements give for that error than for one that is taken out. It is 0 for the network of
+    /// measurements give for that error than for one that is taken out. If it has a delay of every
+    /// receiver taken out, it contains the price of these unknowns. It is 0 for the network of
     /// one-sided errors, which has a likelihood of its own.
     pub log_likelihood_loss: f64,
     /// The error of a receiver without which the measurements fit this network. The measurements

@@ -130,16 +130,18 @@ impl<const D: usize> State<'_, D> {
 
     fn alternative(&self, input: &Input<'_>, other: &Other<D>, sigma: f64) -> Alternative<D> {
         let error = if let Reason::Error(fault) = other.reason { Some(fault) } else { None };
+        let residual = match other.reason {
+            Reason::Error(error) => self.rms(&without_errors(&self.measured, &[error]), &other.network, sigma),
+            Reason::Delays { deviation } => deviation,
+            Reason::Found | Reason::Late { .. } => self.rms(&self.measured, &other.network, sigma),
+        };
         let network = &other.network;
         let (rows, columns) = (&input.usable.receivers, &input.usable.transmitters);
         Alternative {
             receivers: scatter(input.table.receivers(), rows, &network.receivers),
             transmitters: scatter(input.table.transmitters(), columns, &network.transmitters),
             offsets: offsets(input, network),
-            residual: match error {
-                Some(error) => self.rms(&without_errors(&self.measured, &[error]), network, sigma),
-                None => self.rms(&self.measured, network, sigma),
-            },
+            residual,
             log_likelihood_loss: other.loss,
             receiver_error: error.map(|error| self.receiver_error(&error, true)),
         }

@@ -118,6 +118,13 @@ impl<const D: usize> State<'_, D> {
                      elsewhere (see alternatives): use --errors one-sided"
                 ));
             }
+            Reason::Delays { .. } => {
+                return Some(format!(
+                    "all receivers may have delays of their own, which these measurements cannot tell for sure; without these the receivers \
+                     lie {apart} elsewhere (see alternatives): use --receiver-delays all if their clocks were started apart, or measure more \
+                     transmitters"
+                ));
+            }
             Reason::Error(fault) => fault,
         };
         let error = self.receiver_error(&fault, true);
