@@ -12,6 +12,7 @@
 mod cancel;
 mod covariance;
 mod descent;
+mod eliminate;
 mod extend;
 mod gross_errors;
 mod heights;

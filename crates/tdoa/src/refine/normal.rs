@@ -13,10 +13,11 @@ use faer::linalg::cholesky::llt;
 use faer::prelude::default;
 use faer::{MatMut, MatRef};
 use hc::Monitor;
-use hc::poly::simd::{Isa, Kernel};
+use hc::poly::simd::Isa;
 use std::array::from_fn;
 
 use super::cancel::{Cancelled, apart, check};
+use super::eliminate::Eliminate;
 use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
 use crate::network::Network;
@@ -373,41 +374,6 @@ impl<const D: usize> Normal<D> {
 fn cholesky(matrix: &mut [f64], size: usize, scratch: &mut MemBuffer) -> bool {
     let matrix = MatMut::from_column_major_slice_mut(matrix, size, size);
     llt::factor::cholesky_in_place(matrix, default(), Par::Seq, MemStack::new(scratch), default()).is_ok()
-}
-
-/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has D + 1 rows, one after
-/// the other.
-struct Eliminate<'a, const D: usize> {
-    schur: &'a mut [f64],
-    rows: &'a [f64],
-}
-
-impl<const D: usize> Kernel for Eliminate<'_, D> {
-    type Output = ();
-    const WIDEST: Isa = Isa::Avx512;
-
-    #[inline(always)]
-    fn run(self) {
-        let size = self.rows.len() / (D + 1);
-        let (positions, last) = self.rows.split_at(D * size);
-        for (k, column) in self.schur.chunks_exact_mut(size).enumerate() {
-            let (lead, end) = (from_fn::<f64, D, _>(|a| positions[a * size + k]), last[k]);
-            // Receivers that have no measurement.
-            if end == 0.0 && lead.iter().all(|&x| x == 0.0) {
-                continue;
-            }
-            let column = &mut column[k..];
-            let count = column.len();
-            let rows: [&[f64]; D] = from_fn(|a| &positions[a * size + k..][..count]);
-            for ((l, entry), y) in column.iter_mut().enumerate().zip(&last[k..]) {
-                let mut sum = lead[0] * rows[0][l];
-                for a in 1..D {
-                    sum += lead[a] * rows[a][l];
-                }
-                *entry -= sum + end * y;
-            }
-        }
-    }
 }
 
 #[cfg(test)]
