@@ -259,7 +259,7 @@ mod tests {
     use crate::align::align;
     use crate::calibrate::SAME_NETWORK;
     use crate::{CalibrateError, CalibrateOptions, Calibration, Errors, ReceiverDelays};
-    use crate::{SimulateOptions, Simulation, calibrate, simulate};
+    use crate::{Layout, SimulateOptions, Simulation, calibrate, simulate};
 
     const SIGMA: f64 = 0.01;
 
@@ -319,6 +319,29 @@ mod tests {
             let other = error(&symmetric, &simulation).0;
             assert!(free < 0.5 * other, "seed {seed}: {free} {other}");
         }
+    }
+
+    /// In the search a given deviation would leave few measurements of a bent network.
+    #[test]
+    fn a_given_deviation_does_not_keep_the_search_from_rooms() {
+        let mut right = 0;
+        for seed in 0..4 {
+            let mut made = SimulateOptions::<3>::new();
+            (made.receivers, made.transmitters, made.noise, made.seed) = (10, 30, SIGMA, seed);
+            (made.detours, made.detour_size) = (0.3, 1.5);
+            made.layout = Layout::Room { extent: [10.0, 8.0, 3.0] };
+            let made = simulate(&made).unwrap();
+            let options =
+                CalibrateOptions { errors: Errors::OneSided, sigma: Some(SIGMA), ..CalibrateOptions::<3>::new() };
+            let found = calibrate(&made.pseudoranges, &options).unwrap();
+            let pairs = found.receivers.iter().zip(&made.network.receivers).filter_map(|(p, q)| Some(((*p)?, *q)));
+            let (found_at, known): (Vec<_>, Vec<_>) = pairs.unzip();
+            let error = align(&found_at, &known, false).map_or(f64::INFINITY, |a| a.rms);
+            let is_right = found_at.len() == 10 && error < 5.0 * SIGMA;
+            assert!(is_right || found.distrust().is_some(), "seed {seed}: {error}");
+            right += usize::from(is_right);
+        }
+        assert!(right >= 3, "{right} of 4");
     }
 
     #[test]
