@@ -58,7 +58,13 @@ const FAMILIES: &[Known] = &[
         "signs",
         "crates/hc/tests/all/stated/signs.toml",
         "crates/hc/tests/all/stated/signs.start.json",
-        "crates/hc/tests/all/stated/generated.rs",
+        "crates/hc/tests/all/stated/signs.rs",
+    ),
+    known(
+        "minors",
+        "crates/hc/tests/all/stated/minors.toml",
+        "crates/hc/tests/all/stated/minors.start.json",
+        "crates/hc/tests/all/stated/minors.rs",
     ),
 ];
 

@@ -6,11 +6,11 @@
 
 use super::eliminant::Eliminant;
 use super::roots::{Digits, roots_with_multiplicities};
-use super::subresultants::Gaussian;
+use super::subresultants::{Gaussian, common_denominator};
 use crate::tolerances::structure;
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::Zero;
 use poly::{Exact, Monomial, Polynomial, Scalar};
 
 /// Systems of more paths are left to these.
@@ -33,11 +33,7 @@ pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digit
 
 /// A polynomial times a common denominator of its coefficients.
 fn without_denominators(polynomial: &Polynomial<Exact>) -> Polynomial<Exact> {
-    let denominators = polynomial.terms().iter().flat_map(|(_, c)| [c.re.denom(), c.im.denom()]);
-    let denominator = denominators.fold(BigInt::one(), |product, denominator| {
-        let next = BigRational::new(product.clone(), denominator.clone());
-        product * next.denom()
-    });
+    let denominator = common_denominator(polynomial.terms().iter().map(|(_, c)| c));
     polynomial.scaled(&Exact { re: denominator.into(), im: BigRational::zero() })
 }
 

@@ -4,7 +4,7 @@
 //! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
 //! exact polynomials.
 
-use super::subresultants::{self, Gaussian};
+use super::subresultants::{self, Gaussian, common_denominator};
 use crate::singular::{self, Residue, trimmed};
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -109,11 +109,7 @@ fn divisor(a: &[Exact], b: &[Exact]) -> Vec<Exact> {
 
 /// A polynomial times a common denominator of its coefficients.
 fn whole_numbers(a: &[Exact]) -> Vec<Gaussian> {
-    let denominators = a.iter().flat_map(|c| [c.re.denom(), c.im.denom()]);
-    let common = denominators.fold(BigInt::one(), |common, next| {
-        let missing = BigRational::new(common.clone(), next.clone());
-        common * missing.denom()
-    });
+    let common = common_denominator(a.iter());
     let whole = |q: &BigRational| q.numer() * (&common / q.denom());
     a.iter().map(|c| Gaussian::new(whole(&c.re), whole(&c.im))).collect()
 }

@@ -6,7 +6,9 @@
 use crate::singular::trimmed;
 use num_bigint::BigInt;
 use num_complex::Complex;
-use num_traits::{Num, Zero, pow};
+use num_rational::BigRational;
+use num_traits::{Num, One, Zero, pow};
+use poly::Exact;
 
 /// Whole numbers as real and imaginary parts.
 pub(super) type Gaussian = Complex<BigInt>;
@@ -25,6 +27,15 @@ pub(super) fn divisor(a: &[Gaussian], b: &[Gaussian]) -> Vec<Gaussian> {
         (Some(a), Some(b)) => remainders(a, b).divisor().into_iter().map(Gaussian::from).collect(),
         _ => remainders(a.to_vec(), b.to_vec()).divisor(),
     }
+}
+
+/// The least common denominator of the real and imaginary parts of numbers.
+pub(super) fn common_denominator<'a>(numbers: impl Iterator<Item = &'a Exact>) -> BigInt {
+    let denominators = numbers.flat_map(|c| [c.re.denom(), c.im.denom()]);
+    denominators.fold(BigInt::one(), |common, next| {
+        let missing = BigRational::new(common.clone(), next.clone());
+        common * missing.denom()
+    })
 }
 
 /// The real parts, if the imaginary parts are zero: their products take a quarter of the work.

@@ -128,9 +128,9 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// A tracker of the fibres of a family that states more than its equations.
     ///
     /// [`track`](Self::track) then counts ends at which a factor vanishes, or that do not solve all equations, as failed
-    /// ([`PathEnd::Degenerate`]); a path can jump to them. Of each orbit under a symmetry one path is tracked, and the others end at its images, with no steps
-    /// of their own. All are tracked where these paths do not tell where the others end: where one is lost, or images
-    /// meet.
+    /// ([`PathEnd::Degenerate`]); a path can jump to them. Of each orbit under a symmetry one path is tracked, and the
+    /// others end at its images, with no steps of their own. All are tracked where these paths do not tell where the
+    /// others end: where one is lost, or images meet.
     #[must_use]
     pub fn stating(self, stated: Stated<'a>) -> Self {
         FibreTracker { stated, ..self }

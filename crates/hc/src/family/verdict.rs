@@ -8,6 +8,7 @@ use poly::{ComplexDd, Evaluate, Isa};
 
 /// Random points at which the size of an equation is measured.
 const POINTS: usize = 8;
+
 /// What all equations say of a regular solution of combinations of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {

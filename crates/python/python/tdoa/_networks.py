@@ -160,8 +160,9 @@ def calibrate(
         heights, otherwise as the measurements have it, and `dimension_test` of the result says how clearly.
     anchors : array_like of shape (m, 2) or (m, 3), or dict of name to (x, y) or (x, y, z), optional
         Known positions of some receivers in metres, NaN where unknown; by name of transmitters too. They fix the frame, and two
-        or more, in space three or more, are held there. Some coordinates may be NaN, beside two (three) nodes with all. In the
-        plane z is left out; heights that differ by more than a tenth of the extent are refused.
+        or more, in space three or more, are held there. Some coordinates may be NaN, beside two (three) nodes with all; heights
+        of three nodes or more may be all that is known, and turn the network upright once it is found. In the plane z is left out;
+        heights that differ by more than a tenth of the extent are refused.
     anchor_sigma : float, array_like of shape (m,), or dict of name to float, optional
         Standard deviations of the anchors in metres, which are then measurements; 0, the default, for exact ones. An array is of
         receivers.

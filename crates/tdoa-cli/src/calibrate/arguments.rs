@@ -40,7 +40,8 @@ pub(crate) struct Arguments {
     /// Known positions of some receivers and transmitters (columns name, x, y and, in space, z in any
     /// order, metres): they fix the frame, and two or more (three) are held there, which sharpens the rest.
     /// With a column sigma (or std_x and std_y, std_z) they are measurements with that standard deviation,
-    /// exact where it is 0; coordinates may be empty.
+    /// exact where it is 0; coordinates may be empty. In space, z of three nodes or more may be all that is known:
+    /// it turns the network upright.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     pub(super) anchors: Option<PathBuf>,
     /// What is done about receivers whose measurements are all too long or too short, as by a

@@ -114,7 +114,8 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// Positions of receivers that were measured by other means, with an error or in only one
     /// coordinate, and positions of transmitters. All coordinates of two nodes or more must be known, in space of
     /// three that are not in one line, here or among the anchors. Exact transmitters are held to a millionth of the size of
-    /// the known positions. Default empty.
+    /// the known positions. In space, heights (z) of three nodes or more may be all that is known: they turn the network
+    /// upright once it is found. Default empty.
     pub positions: Vec<MeasuredPosition<D>>,
     /// How to treat receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.

@@ -1,12 +1,16 @@
-//! Trackers of fibres that know factors and symmetries: of interpreted families, and of a generated module.
+//! Trackers of fibres that know factors, symmetries and further equations: of interpreted families, and of generated
+//! modules.
 
-// Written by `cargo xtask codegen --only signs`.
+// Both written by `cargo xtask codegen`.
 #[rustfmt::skip]
-mod generated;
+mod minors;
+#[rustfmt::skip]
+mod signs;
 
 use hc::family::{FibreOptions, FibreTracker, OneChart, PathCounts};
 use hc::poly::Complex64;
 use hc::random::Random;
+use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet};
 use hc::{Family, Fibre, MonodromyOptions};
 
@@ -26,10 +30,10 @@ fn ends(paths: &PathSet) -> Vec<Vec<i64>> {
 /// Fifteen of sixty paths are tracked to random targets; their images are where the others end.
 #[test]
 fn a_generated_solver_tracks_one_path_for_each_orbit() {
-    let (fibre, system, options) = (generated::fibre(), generated::System, FibreOptions::default());
+    let (fibre, system, options) = (signs::fibre(), signs::System, FibreOptions::default());
     assert_eq!(fibre.len(), 60);
     let mut plain = FibreTracker::new(&system, OneChart, &fibre);
-    let mut stating = FibreTracker::new(&system, OneChart, &fibre).stating(generated::stated());
+    let mut stating = FibreTracker::new(&system, OneChart, &fibre).stating(signs::stated());
     let mut random = Random::new(0, 71);
     for _ in 0..20 {
         let target = random.normals(8);
@@ -45,10 +49,10 @@ fn a_generated_solver_tracks_one_path_for_each_orbit() {
 #[test]
 fn an_interpreted_family_tracks_the_same_paths() {
     let family: Family = include_str!("signs.toml").parse().unwrap();
-    let (fibre, options) = (generated::fibre(), FibreOptions::default());
+    let (fibre, options) = (signs::fibre(), FibreOptions::default());
     let target = Random::new(1, 71).normals(8);
     let mut interpreted = FibreTracker::new(family.program(), OneChart, &fibre).stating(family.stated());
-    let mut generated = FibreTracker::new(&generated::System, OneChart, &fibre).stating(generated::stated());
+    let mut generated = FibreTracker::new(&signs::System, OneChart, &fibre).stating(signs::stated());
     let counts = interpreted.track(&fibre, &target, &options);
     assert_eq!(counts, generated.track(&fibre, &target, &options));
     assert_eq!(interpreted.paths(), generated.paths());
@@ -105,6 +109,39 @@ fn ends_that_do_not_solve_all_equations_have_failed() {
     assert_eq!(paths.results()[0].end, PathEnd::Degenerate);
     let (counts, paths) = tracked(&family, &special, &[5.0, 5.0]);
     assert!(counts.finite == 1 && (paths.point(0)[0] - 5.0).norm() < 1e-12);
+}
+
+/// Combinations of the equations are two conics, which meet in four points: one more than all equations have.
+#[test]
+fn a_generated_solver_checks_all_equations() {
+    let (fibre, system, options) = (minors::fibre(), minors::System, FibreOptions::default());
+    let mut random = Random::new(2, 71);
+    let mut refiner = Refiner::new(&system);
+    // Newton's method from anywhere, a few steps at a time.
+    let mut end = |start: Vec<Complex64>| {
+        let mut found = refiner.refine(&fibre.parameters, &start);
+        for _ in 0..20 {
+            found = refiner.refine(&fibre.parameters, &found.point);
+        }
+        found
+    };
+    let further = (0..200)
+        .map(|_| end(random.normals(2)))
+        .filter(|found| found.accuracy < 1e-12)
+        .find(|found| fibre.iter().all(|x| (x[0] - found.point[0]).norm() > 1e-3))
+        .unwrap();
+    let all = Fibre::new(fibre.parameters.clone(), 2, [&fibre.solutions[..], &further.point].concat());
+    let mut plain = FibreTracker::new(&system, OneChart, &all);
+    let mut stating = FibreTracker::new(&system, OneChart, &all).stating(minors::stated());
+    for _ in 0..20 {
+        let target = random.normals(6);
+        let counts = plain.track(&all, &target, &options);
+        assert_eq!((counts.tracked, counts.finite, counts.failed), (4, 4, 0));
+        let counts = stating.track(&all, &target, &options);
+        assert_eq!((counts.tracked, counts.finite, counts.failed), (4, 3, 1));
+        let ended: Vec<bool> = stating.paths().results().iter().map(|path| path.end == PathEnd::Success).collect();
+        assert_eq!(ended, [true, true, true, false]);
+    }
 }
 
 /// Each factor is measured by its own derivatives, however large those of another are.

@@ -65,10 +65,8 @@ pub(crate) struct WeakNodes {
     pub(crate) transmitters: Vec<usize>,
     /// Receivers that are among these or not determined at all.
     open: usize,
-    /// Receivers in all.
-    all: usize,
-    /// Transmitters in all.
-    heard: usize,
+    all_receivers: usize,
+    all_transmitters: usize,
 }
 
 impl WeakNodes {
@@ -84,18 +82,19 @@ impl WeakNodes {
         let open = (0..all).filter(|i| uncertainty.loose.contains(i) || receivers.contains(i)).count();
         let is_far = |j: &usize| far.iter().any(|far| far.transmitter == *j);
         let transmitters = (0..network.transmitters.len()).filter(|j| of_transmitter(j) && !is_far(j)).collect();
-        WeakNodes { receivers, transmitters, open, all, heard: network.transmitters.len() }
+        WeakNodes { receivers, transmitters, open, all_receivers: all, all_transmitters: network.transmitters.len() }
     }
 
     /// Whether they are more than half of the receivers.
     pub(crate) fn are_most_receivers(&self) -> bool {
-        2 * self.open > self.all
+        2 * self.open > self.all_receivers
     }
 
     /// Whether they are most receivers, or most nodes with more than a quarter of the receivers among them.
     pub(crate) fn are_most(&self) -> bool {
         let nodes = self.open + self.transmitters.len();
-        self.are_most_receivers() || (4 * self.open > self.all && 2 * nodes > self.all + self.heard)
+        self.are_most_receivers()
+            || (4 * self.open > self.all_receivers && 2 * nodes > self.all_receivers + self.all_transmitters)
     }
 }
 
@@ -117,8 +116,8 @@ mod tests {
                 receivers: (0..open).collect(),
                 transmitters: (0..transmitters).collect(),
                 open,
-                all: 9,
-                heard: 40,
+                all_receivers: 9,
+                all_transmitters: 40,
             };
             weak.are_most()
         };

@@ -87,7 +87,8 @@ impl<const D: usize> State<'_, D> {
     }
 
     /// Takes a delay of every receiver out where that makes the measurements likelier than the errors of some that are
-    /// taken out so far, each at its price; where it nearly does, its network is a neighbour. `before` are the networks without anything taken out.
+    /// taken out so far, each at its price; where it nearly does, its network is a neighbour. `before` are the networks
+    /// without anything taken out.
     pub(crate) fn prefer_delays_of_all(&mut self, before: &[RefinedNetwork<D>]) -> Result<(), CalibrateError<D>> {
         let receivers = self.measured.receivers();
         if self.measured.are_ranges() {

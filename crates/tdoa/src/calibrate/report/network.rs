@@ -10,6 +10,7 @@ use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::receivers::take_out::without_errors;
 use crate::calibrate::report::calibration::{Alternative, Calibration};
 use crate::calibrate::report::residuals::{Residual, Residuals};
+use crate::calibrate::search::deviation::typical_deviation;
 use crate::calibrate::state::State;
 use crate::cells::Cells;
 use crate::minimal::NodeKind;
@@ -132,7 +133,7 @@ impl<const D: usize> State<'_, D> {
         let error = if let Reason::Error(fault) = other.reason { Some(fault) } else { None };
         let residual = match other.reason {
             Reason::Error(error) => self.rms(&without_errors(&self.measured, &[error]), &other.network, sigma),
-            Reason::Delays { deviation } => deviation,
+            Reason::Delays { deviation } => deviation * typical_deviation(&self.measured),
             Reason::Found | Reason::Late { .. } => self.rms(&self.measured, &other.network, sigma),
         };
         let network = &other.network;
