@@ -111,6 +111,7 @@ fn choose_among_all<const D: usize>(
         sources: all,
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter },
         deviation: None,
+        shakes: true,
     };
     let found = state.run(&search, &part)?;
     let (m, n) = (state.measured.receivers(), state.measured.transmitters());

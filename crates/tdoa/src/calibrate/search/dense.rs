@@ -68,6 +68,7 @@ fn search<const D: usize>(state: &mut State<'_, D>, sources: &[&dyn Hypotheses<D
         sources: all,
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
+        shakes: options.errors != Errors::OneSided,
     };
     let found = state.run(&search, &part)?;
     let (m, n) = (state.measured.receivers(), state.measured.transmitters());

@@ -13,6 +13,7 @@ pub(crate) mod one_sided;
 pub(crate) mod propagation;
 pub(crate) mod rivals;
 pub(crate) mod same_network;
+mod shaken;
 pub(crate) mod starts;
 pub(crate) mod submaps;
 pub(crate) mod truncated_cost;

@@ -8,12 +8,14 @@ use crate::calibrate::judge::neighbours::minima;
 use crate::calibrate::options::{CalibrateError, SearchOptions};
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::same_network::{distinct, same, same_but_for_sides};
+use crate::calibrate::search::shaken::{Round, least, part_of};
 use crate::calibrate::search::truncated_cost::truncated_cost;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, extend, residuals};
+use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, RefinedNetwork, extend, residuals};
+use std::ops::Range;
 
 /// Starts that run between two looks at the result. Fixed, so that the result does not depend on
 /// the number of threads.
@@ -54,7 +56,12 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(crate) wide: Loss,
     /// Deviation of the measurements if it is known: networks are then ranked by what they explain.
     pub(crate) deviation: Option<f64>,
+    /// Whether networks are ranked by what they are searched by, so that parts of the best one lead to better ones.
+    pub(crate) shakes: bool,
 }
+
+/// Starts that must end in the best network before it is not shaken.
+const SETTLED: usize = 3;
 
 /// Number of the first call of a source in another's turn; far above the numbers of its own turns.
 const EXTRA_TURNS: usize = 1 << 24;
@@ -66,71 +73,110 @@ impl<const D: usize> Search<'_, D> {
         seed: u64,
         monitor: &Monitor,
     ) -> Result<SearchOutcome<D>, CalibrateError<D>> {
-        let mut refined: Vec<RefinedNetwork<D>> = Vec::new();
+        let mut ends: Vec<RefinedNetwork<D>> = Vec::new();
         let mut starts = 0;
+        let mut round = Round::default();
         monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
-            let batch = BATCH.min(options.max_starts - starts);
-            let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU, monitor);
-            let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
-                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, seed, monitor) }
-            };
-            let batch = starts..starts + batch;
-            #[cfg(feature = "threads")]
-            let ended: Vec<Vec<RefinedNetwork<D>>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
-            #[cfg(not(feature = "threads"))]
-            let ended: Vec<Vec<RefinedNetwork<D>>> = {
-                let mut refiner = refiner();
-                batch.clone().map(|index| start(&mut refiner, index)).collect()
-            };
-            let stopped = monitor.is_cancelled();
-            // The refinements of a batch that was stopped have not ended.
-            if !stopped || refined.is_empty() {
-                starts = batch.start + ended.iter().filter(|networks| !networks.is_empty()).count();
-                refined.extend(ended.into_iter().flatten());
-            }
-            if stopped {
-                let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
-                let best = best.map(|best| RefinedNetwork { starts: starts_in(best, &refined), ..best.clone() });
+            let batch = starts..starts + BATCH.min(options.max_starts - starts);
+            let ended = self.batch(batch.clone(), round.shaken(), seed, monitor);
+            if monitor.is_cancelled() {
+                // The refinements of a batch that was stopped have not ended.
+                if ends.is_empty() {
+                    starts = batch.start + ended.iter().filter(|networks| !networks.is_empty()).count();
+                    ends.extend(ended.into_iter().flatten());
+                }
+                let best = least(&ends);
+                let best = best.map(|best| RefinedNetwork { starts: starts_in(best, &ends), ..best.clone() });
                 return Ok(SearchOutcome { networks: best.into_iter().collect(), near: Vec::new(), starts });
             }
             starts = batch.end;
-            let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
-            let agreeing = best.map_or(0, |best| starts_in(best, &refined));
-            monitor.reach(starts as u64, agreeing as u64);
-            let enough = starts >= options.min_starts && agreeing >= options.agreeing;
-            if enough || starts >= options.max_starts {
-                if refined.is_empty() {
-                    return Err(CalibrateError::NotFound(starts));
-                }
-                refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-                let mut networks = distinct(refined.clone(), MOST_REFINED);
-                for network in &mut networks {
-                    network.starts = starts_in(network, &refined);
-                }
-                let best = &networks[0];
-                let close = refined.iter().take_while(|r| r.objective <= best.objective + SAME_BASIN);
-                let close = close.filter(|r| same(&r.network, &best.network)).map(|r| r.network.clone());
-                let near = minima(&best.network, close);
-                return Ok(SearchOutcome { networks, near, starts });
+            round.take(&mut ends, ended.into_iter().flatten().collect(), batch.len());
+            let last = starts >= options.max_starts;
+            if last {
+                round.end(&mut ends);
             }
+            let agreeing = least(&ends).map_or(0, |best| starts_in(best, &ends));
+            monitor.reach(starts as u64, agreeing as u64);
+            if last || starts >= options.min_starts && agreeing >= options.agreeing {
+                break;
+            }
+            round.go_on(&mut ends, options.min_starts, self.shakes && agreeing < SETTLED && self.are_redundant());
         }
+        if ends.is_empty() {
+            return Err(CalibrateError::NotFound(starts));
+        }
+        ends.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        let mut networks = distinct(ends.clone(), MOST_REFINED);
+        for network in &mut networks {
+            // Parts of another network may have led to it: that, too, began with a start.
+            network.starts = starts_in(network, &ends).max(1);
+        }
+        let best = &networks[0];
+        let close = ends.iter().take_while(|r| r.objective <= best.objective + SAME_BASIN);
+        let close = close.filter(|r| same(&r.network, &best.network)).map(|r| r.network.clone());
+        let near = minima(&best.network, close);
+        Ok(SearchOutcome { networks, near, starts })
+    }
+
+    /// Whether there are more measurements than unknowns: other networks fit exactly else, and none is better.
+    fn are_redundant(&self) -> bool {
+        self.observations.len() > self.observations.unknowns()
+    }
+
+    /// The ends of a batch of starts, from parts of a network if one is `shaken`; empty where stopped.
+    fn batch(
+        &self,
+        batch: Range<usize>,
+        shaken: Option<&Network<D>>,
+        seed: u64,
+        monitor: &Monitor,
+    ) -> Vec<Vec<RefinedNetwork<D>>> {
+        let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU, monitor);
+        let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
+            if monitor.is_cancelled() {
+                return Vec::new();
+            }
+            let proposals = match shaken {
+                Some(network) => vec![part_of(network, index, seed)],
+                None => self.proposals(index, seed),
+            };
+            self.start(refiner, &proposals, self.adapts(index), monitor)
+        };
+        #[cfg(feature = "threads")]
+        return batch.into_par_iter().map_init(refiner, start).collect();
+        #[cfg(not(feature = "threads"))]
+        {
+            let mut refiner = refiner();
+            batch.map(|index| start(&mut refiner, index)).collect()
+        }
+    }
+
+    /// What the source whose turn it is proposes.
+    fn proposals(&self, index: usize, seed: u64) -> Vec<PartialNetwork<D>> {
+        let source = self.sources[index % self.sources.len()];
+        let proposals = source.propose(self.measured, index / self.sources.len(), seed);
+        if proposals.is_empty() && self.sources.len() > 1 {
+            // A source that has nothing more to say leaves its turn to the first, under a number
+            // that no other call has.
+            return self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
+        }
+        proposals
+    }
+
+    /// Whether a start estimates the scale of its residuals first, where the noise is known: every other one of each
+    /// source. The loss of known noise is narrow, and has a minimum wherever as many measurements fit as there are unknowns.
+    fn adapts(&self, index: usize) -> bool {
+        self.deviation.is_some() && index / self.sources.len() % 2 == 1
     }
 
     fn start(
         &self,
         refiner: &mut NetworkRefiner<'_, D>,
-        index: usize,
-        seed: u64,
+        proposals: &[PartialNetwork<D>],
+        adapts: bool,
         monitor: &Monitor,
     ) -> Vec<RefinedNetwork<D>> {
-        let source = self.sources[index % self.sources.len()];
-        let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
-        if proposals.is_empty() && self.sources.len() > 1 {
-            // A source that has nothing more to say leaves its turn to the first, under a number
-            // that no other call has.
-            proposals = self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
-        }
         let mut ranked: Vec<(f64, Network<D>)> = proposals
             .iter()
             .filter_map(|part| extend(self.observations, part, &self.wide, monitor).ok().flatten())
@@ -143,12 +189,20 @@ impl<const D: usize> Search<'_, D> {
         let mut refined: Vec<RefinedNetwork<D>> = ranked
             .into_iter()
             .take(promising.max(REFINED))
-            .map(|(_, network)| refiner.refine(network, &self.refine))
+            .map(|(_, network)| self.refined(refiner, network, adapts))
             .map(|refined| self.judge(refined))
             .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
             .collect();
         refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         distinct(refined, MOST_REFINED)
+    }
+
+    fn refined(&self, refiner: &mut NetworkRefiner<'_, D>, network: Network<D>, adapts: bool) -> RefinedNetwork<D> {
+        if !adapts {
+            return refiner.refine(network, &self.refine);
+        }
+        let free = refiner.refine(network, &RefineOptions { scale: None, ..self.refine });
+        refiner.refine(free.network, &RefineOptions { anneal_from: Some(free.scale), ..self.refine })
     }
 
     /// Replaces the objective by the truncated cost where the noise is known.
@@ -172,6 +226,6 @@ impl<const D: usize> Search<'_, D> {
 /// How many of `all` ended in the basin of `best`. Where receivers lie in one plane, transmitters have mirror
 /// images, and hardly two starts choose the same side for all of them.
 fn starts_in<const D: usize>(best: &RefinedNetwork<D>, all: &[RefinedNetwork<D>]) -> usize {
-    let near = all.iter().filter(|r| r.objective < best.objective + SAME_BASIN);
+    let near = all.iter().filter(|r| r.starts > 0 && r.objective < best.objective + SAME_BASIN);
     near.filter(|r| same_but_for_sides(&r.network, &best.network)).count()
 }
