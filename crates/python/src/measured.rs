@@ -18,6 +18,8 @@ pub(crate) struct Table<'py> {
     values: PyReadonlyArrayDyn<'py, f64>,
     /// Standard deviations of the cells, metres.
     sigmas: Option<PyReadonlyArrayDyn<'py, f64>>,
+    /// Their weights, in any unit.
+    weights: Option<PyReadonlyArrayDyn<'py, f64>>,
     /// Further candidates of the cells, a layer for each, NaN where a cell has no more.
     candidates: Option<PyReadonlyArrayDyn<'py, f64>>,
     /// Names of receivers and transmitters.
@@ -46,6 +48,11 @@ impl Table<'_> {
         }
         if let Some(sigmas) = &self.sigmas {
             measured = measured.with_sigmas(elements(sigmas, 2)?.0).map_err(Failure::input)?;
+        }
+        if let Some(weights) = &self.weights {
+            let (weights, _) = elements(weights, 2)?;
+            let weight = |i: usize, j: usize| weights.get(i * shape[1] + j).copied().unwrap_or(f64::NAN);
+            measured = measured.with_weight_of(weight).map_err(Failure::input)?;
         }
         if let Some(candidates) = &self.candidates {
             let (all, layers) = elements(candidates, 3)?;
@@ -84,7 +91,7 @@ pub(crate) fn heads_list(headings: Vec<String>) -> bool {
 }
 
 /// Measurements from a file, or from `data` as if they were in a file of that name: a dict of
-/// values, sigmas and names. Columns are pairs of a role and a heading.
+/// values, sigmas, weights and names. Columns are pairs of a role and a heading.
 #[pyfunction]
 pub(crate) fn read<'py>(
     py: Python<'py>,
@@ -117,10 +124,15 @@ pub(crate) fn read<'py>(
         let measured = measured.map_err(Failure::input)?;
         let (m, n) = (measured.receivers(), measured.transmitters());
         let sigma = |k: usize| measured.sigma(k / n, k % n).unwrap_or(f64::NAN);
+        let weight = |k: usize| measured.weight(k / n, k % n).unwrap_or(f64::NAN);
         let found = PyDict::new(py);
         found.set_item("values", array(py, measured.dense(), &[m, n])?)?;
-        let sigmas = measured.has_sigmas().then(|| array(py, (0..m * n).map(sigma).collect(), &[m, n])).transpose()?;
+        let knows = measured.knows_sigmas();
+        let sigmas = knows.then(|| array(py, (0..m * n).map(sigma).collect(), &[m, n])).transpose()?;
         found.set_item("sigmas", sigmas)?;
+        let weighed = measured.has_sigmas() && !knows;
+        let weights = weighed.then(|| array(py, (0..m * n).map(weight).collect(), &[m, n])).transpose()?;
+        found.set_item("weights", weights)?;
         found.set_item("candidates", further(py, &measured)?)?;
         found.set_item("receiver_names", measured.receivers_named().then(|| measured.receiver_names()))?;
         found.set_item("transmitter_names", measured.transmitter_names())?;

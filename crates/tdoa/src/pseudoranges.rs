@@ -6,6 +6,7 @@ pub use error::{MAX_CELLS, MAX_MAGNITUDE, PseudorangeError};
 
 use crate::candidates::Candidates;
 use crate::cells::Cells;
+use crate::median::median;
 
 /// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
 /// rows, transmitters j in columns. Cells that were not measured are missing. Where a detector found several
@@ -25,6 +26,8 @@ pub struct Pseudoranges {
     cells: Cells<f64>,
     /// The standard deviations of the same cells.
     sigmas: Option<Cells<f64>>,
+    /// Whether these are shares of one deviation, which is not known.
+    are_shares: bool,
     /// All candidates of those cells that have more than one; their values are the chosen ones.
     candidates: Option<Cells<Candidates>>,
     receiver_names: Vec<String>,
@@ -90,6 +93,7 @@ impl Pseudoranges {
             receivers_named: false,
             are_ranges: false,
             sigmas: None,
+            are_shares: false,
             candidates: None,
             cells,
         };
@@ -159,8 +163,30 @@ impl Pseudoranges {
                 value,
             });
         }
-        self.sigmas = Some(sigmas);
+        (self.sigmas, self.are_shares) = (Some(sigmas), false);
         Ok(self)
+    }
+
+    /// This matrix with a weight for each measured cell, by receiver and transmitter: one over the square of its
+    /// standard deviation, in any unit. The deviation of a measurement with the median weight is then to be given, or
+    /// estimated. Measurements of weight zero are left out.
+    ///
+    /// # Errors
+    /// If a weight is negative or not finite, or all are zero.
+    pub fn with_weight_of(self, weight: impl Fn(usize, usize) -> f64) -> Result<Self, PseudorangeError> {
+        let mut weights: Vec<f64> = Vec::new();
+        for (i, j, _) in self.cells.iter() {
+            let value = weight(i, j);
+            if !(value.is_finite() && value >= 0.0) {
+                let (receiver, transmitter) = (self.receiver_names[i].clone(), self.transmitter_names[j].clone());
+                return Err(PseudorangeError::Weight { receiver, transmitter, value });
+            }
+            weights.extend((value > 0.0).then_some(value));
+        }
+        let median = median(weights).ok_or(PseudorangeError::NoWeight)?;
+        let weighed = self.filter(|i, j, _| weight(i, j) > 0.0);
+        let weighed = weighed.with_sigma_of(|i, j| (median / weight(i, j)).sqrt())?;
+        Ok(Pseudoranges { are_shares: true, ..weighed })
     }
 
     /// This matrix with further candidates of some cells: receiver, transmitter (both from 0) and value in
@@ -279,14 +305,25 @@ impl Pseudoranges {
         self.doubtful().zip(other.doubtful()).any(|(a, b)| a.2.chosen() != b.2.chosen())
     }
 
-    /// The standard deviation (metres) given for a cell; `None` if there is none.
+    /// The standard deviation (metres) given for a cell, or its share of that of a measurement with the median weight
+    /// where weights are given; `None` if there is none.
     pub fn sigma(&self, i: usize, j: usize) -> Option<f64> {
         self.sigmas.as_ref()?.get(i, j).copied()
     }
 
-    /// Whether the cells carry their own standard deviations.
+    /// Whether the cells carry their own standard deviations, or weights.
     pub fn has_sigmas(&self) -> bool {
         self.sigmas.is_some()
+    }
+
+    /// The weight of a cell, in units of the median weight; `None` if no weights are given.
+    pub fn weight(&self, i: usize, j: usize) -> Option<f64> {
+        self.sigma(i, j).filter(|_| self.are_shares).map(|share| share.powi(-2))
+    }
+
+    /// Whether the cells carry standard deviations in metres, not weights.
+    pub fn knows_sigmas(&self) -> bool {
+        self.has_sigmas() && !self.are_shares
     }
 
     /// The measured cells.
@@ -365,6 +402,7 @@ impl Pseudoranges {
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
             are_ranges: self.are_ranges,
+            are_shares: self.are_shares,
             cells: self.cells.select(receivers, transmitters),
             sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),
             candidates: (self.candidates.as_ref().map(|all| all.select(receivers, transmitters)))

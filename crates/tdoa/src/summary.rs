@@ -113,6 +113,9 @@ pub fn deviation<const D: usize>(calibration: &Calibration<D>) -> String {
     let sigma = calibration.sigma;
     match (calibration.sigma_estimated, calibration.redundancy) {
         (true, 0) => "as many as unknowns: their standard deviation is not known".to_string(),
+        (true, _) if calibration.sigma_is_factor => {
+            format!("standard deviation {} at the median weight (estimated)", length(sigma))
+        }
         (true, _) => format!("standard deviation {} (estimated)", length(sigma)),
         (false, _) if !calibration.sigma_is_factor => format!("standard deviation {} (given)", length(sigma)),
         (false, _) if sigma == 1.0 => "each with its own standard deviation (given)".to_string(),
@@ -230,6 +233,38 @@ mod tests {
         let text = summary(&found);
         assert!(!text.contains("in the plane") && !text.contains("in space"), "{text}");
         assert!(text.contains("size: ") && text.contains("unique: no other places"), "{text}");
+    }
+
+    /// Receivers alternate between 3 cm and 3 mm of noise.
+    #[test]
+    fn weights_are_deviations_but_for_a_factor() {
+        let made = SimulateOptions { receivers: 9, transmitters: 20, noise: 0.003, ..Default::default() };
+        let made = simulate(&made).unwrap();
+        let coarse = |i: usize| if i.is_multiple_of(2) { 10.0 } else { 1.0 };
+        let (network, measured) = (&made.network, &made.pseudoranges);
+        let noisy = |i, j| {
+            let exact = network.pseudorange(i, j);
+            exact + coarse(i) * (measured.get(i, j).unwrap() - exact)
+        };
+        let values = (0..180).map(|k| noisy(k / 20, k % 20)).collect();
+        let measured = crate::Pseudoranges::new(9, 20, values).unwrap();
+        let weighed = measured.clone().with_weight_of(|i, _| 7.0 / coarse(i).powi(2)).unwrap();
+        let found = calibrate(&weighed, &CalibrateOptions::default()).unwrap();
+        assert!(found.sigma_is_factor && found.sigma_estimated, "{found:?}");
+        assert!(summary(&found).contains("at the median weight (estimated)"), "{}", summary(&found));
+        // Five of nine receivers have the median weight. 180 measurements less 75 unknowns leave a deviation of the
+        // estimate of 7 %.
+        assert!((found.sigma / 0.03 - 1.0).abs() < 0.2, "{}", found.sigma);
+
+        // Given the deviation of the median weight, weights are deviations.
+        let given = CalibrateOptions { sigma: Some(0.03), ..Default::default() };
+        let by_weights = calibrate(&weighed, &given).unwrap();
+        let with_sigmas = measured.with_sigma_of(|i, _| 0.003 * coarse(i)).unwrap();
+        let by_sigmas = calibrate(&with_sigmas, &CalibrateOptions::default()).unwrap();
+        let pairs = by_weights.receivers.iter().flatten().zip(by_sigmas.receivers.iter().flatten());
+        assert!(
+            pairs.clone().count() == 9 && pairs.flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).all(|d| d.abs() < 1e-6)
+        );
     }
 
     #[test]

@@ -51,6 +51,7 @@ _Names = Sequence[str] | tuple[Sequence[str] | None, Sequence[str] | None] | Map
 class Pseudoranges:
     values: _Floats
     sigmas: _Floats | None
+    weights: _Floats | None
     candidates: _Floats | None
     receiver_names: list[str] | None
     transmitter_names: list[str] | None
@@ -62,6 +63,7 @@ class Pseudoranges:
         receiver_names: Iterable[str] | None = None,
         transmitter_names: Iterable[str] | None = None,
         candidates: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
     ) -> None: ...
     @property
     def shape(self) -> tuple[int, int]: ...

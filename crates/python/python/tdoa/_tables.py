@@ -23,6 +23,9 @@ class Pseudoranges(Result):
         Pseudoranges in metres, receivers in rows, transmitters in columns; NaN where nothing was measured.
     sigmas : ndarray of float, shape (m, n), or None
         Their standard deviations in metres.
+    weights : ndarray of float, shape (m, n), or None
+        One over the squares of their standard deviations, in any unit, where these are known but for a factor, which `calibrate`
+        estimates, or `sigma` says for the median weight. A weight of zero leaves a cell out.
     candidates : ndarray of float, shape (m, n, k), or None
         Further candidates for the values, metres, where a detector found several and cannot tell which is right; NaN where a cell
         has no more. `calibrate` picks one of each cell.
@@ -30,9 +33,14 @@ class Pseudoranges(Result):
         Names of the nodes.
     """
 
-    def __init__(self, values, *, sigmas=None, receiver_names=None, transmitter_names=None, candidates=None):
+    def __init__(self, values, *, sigmas=None, receiver_names=None, transmitter_names=None, candidates=None, weights=None):
         self.values = real_matrix("pseudoranges", values)
         self.sigmas = None if sigmas is None else real_matrix("sigmas", sigmas)
+        self.weights = None if weights is None else real_matrix("weights", weights)
+        if weights is not None and self.weights.shape != self.values.shape:
+            raise InputError(f"weights must have the shape of the pseudoranges, {self.values.shape}, not {self.weights.shape}")
+        if sigmas is not None and weights is not None:
+            raise InputError("sigmas and weights say twice how sure the measurements are; leave one out")
         self.candidates = None if candidates is None else _layers(candidates, self.values.shape)
         self.receiver_names = strings("receiver_names", receiver_names)
         self.transmitter_names = strings("transmitter_names", transmitter_names)
@@ -124,7 +132,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
         is_path = isinstance(pseudoranges, (str, os.PathLike))
         given = repr(os.fspath(pseudoranges)) if is_path else "file"
         raise InputError(f"pseudoranges must be a table, not a file; read it first: tdoa.read({given}), with the units of its numbers")
-    receivers = transmitters = sigmas = candidates = None
+    receivers = transmitters = sigmas = weights = candidates = None
     factor = None
     if speed is not None:
         factor = number("speed", speed)
@@ -136,7 +144,8 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
     if is_frame and (measured := _long(pseudoranges, factor)) is not None:
         pseudoranges, in_metres = measured, None
     if isinstance(pseudoranges, Pseudoranges):
-        values, sigmas, candidates = pseudoranges.values, pseudoranges.sigmas, pseudoranges.candidates
+        values, candidates = pseudoranges.values, pseudoranges.candidates
+        sigmas, weights = pseudoranges.sigmas, pseudoranges.weights
         receivers, transmitters = pseudoranges.receiver_names, pseudoranges.transmitter_names
     elif is_frame:
         frame = pseudoranges
@@ -172,9 +181,11 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
             sigmas = real_matrix("sigma", sigma)
             if sigmas.shape != values.shape:
                 raise InputError(f"sigma must have the shape of the pseudoranges, {values.shape}, not {sigmas.shape}")
+            weights = None
     given = {
         "values": values,
         "sigmas": sigmas,
+        "weights": weights,
         "candidates": candidates,
         "receivers": receivers,
         "transmitters": transmitters,

@@ -11,7 +11,7 @@ use crate::provenance::{named, said};
 /// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was
 /// measured, optionally with names in the first line and the first column), a CSV list with one
 /// measurement a line below a header that names the columns receiver (or mic, anchor, sensor),
-/// transmitter (or event, source, tag), value (or time, toa, range) and, if wanted, sigma, and value2,
+/// transmitter (or event, source, tag), value (or time, toa, range) and, if wanted, sigma or weight, and value2,
 /// value3, ... with further candidates for the value, of which one is picked, in any
 /// order, a .npy array, or a .mat file with the matrix z (or --variable) and, as truth, the
 /// positions rgt. Cells stand between commas, semicolons, tabs or blanks; with any but commas,

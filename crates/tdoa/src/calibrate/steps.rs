@@ -57,7 +57,7 @@ impl<'a, const D: usize> Draft<'a, D> {
         let mut usable = usable::<D>(&table)?;
         check(monitor)?;
         usable.warnings.extend(left_out);
-        let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
+        let known = options.sigma.or(if table.knows_sigmas() { Some(1.0) } else { None });
         let input = Input::new(table, usable, options.receiver_delays == ReceiverDelays::All);
         let state = State::new(input.centred(), known, options, monitor);
         Draft { state, input }.then(|draft| draft.search(sources))

@@ -74,6 +74,19 @@ pub enum PseudorangeError {
         /// The value.
         value: f64,
     },
+    /// A weight that is negative or not finite.
+    #[error("receiver {receiver}, transmitter {transmitter}: the weight must be finite and not negative, not {value}")]
+    Weight {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+        /// The value.
+        value: f64,
+    },
+    /// All weights are zero.
+    #[error("all weights are zero, so that no measurement is left; give positive weights")]
+    NoWeight,
     /// A cell beyond the last receiver or transmitter.
     #[error("receiver {receiver}, transmitter {transmitter}: there are only {configuration}")]
     Outside {

@@ -3,7 +3,7 @@
 
 use super::heading::{Heading, check_unit, quoted};
 use super::units::Units;
-use super::words::{LENGTH, SIGMA, TIME};
+use super::words::{LENGTH, SIGMA, TIME, WEIGHT};
 
 /// The name and the number of a heading that ends in one.
 fn numbered(heading: &Heading) -> Option<(&str, u32)> {
@@ -57,11 +57,12 @@ pub(super) fn check_further(
             return Err(format!("{:?} and {:?} are in different units; give both in {unit}", cells[value], cells[k]));
         }
     }
-    let is_sigma = |k: usize| numbered(&headings[k]).is_some_and(|(stem, _)| SIGMA.sure.contains(&stem));
+    let tells_how_sure = |stem: &str| SIGMA.sure.contains(&stem) || WEIGHT.sure.contains(&stem);
+    let is_sigma = |k: usize| numbered(&headings[k]).is_some_and(|(stem, _)| tells_how_sure(stem));
     match (0..headings.len()).find(|&k| !further.is_empty() && is_free(k) && is_sigma(k)) {
         None => Ok(()),
         Some(k) => Err(format!(
-            "the column {:?} has standard deviations of further candidates, but one is for all candidates of a pair; leave it out \
+            "the column {:?} says how sure further candidates are, but one is for all candidates of a pair; leave it out \
              (--columns ignore={})",
             cells[k],
             quoted(&cells[k])

@@ -5,7 +5,7 @@ use super::error::ReadError;
 use super::heading::{Heading, check_unit, quoted};
 use super::role::Role;
 use super::units::ReadOptions;
-use super::words::{LENGTH, RECEIVER, REFERENCE, SIGMA, TIME, TRANSMITTER, Words};
+use super::words::{LENGTH, RECEIVER, REFERENCE, SIGMA, TIME, TRANSMITTER, WEIGHT, Words};
 
 /// Where a list has its columns.
 pub(super) struct Columns {
@@ -17,6 +17,7 @@ pub(super) struct Columns {
     /// Whether several lines of one pair are its candidates.
     pub(super) repeats: bool,
     pub(super) sigma: Option<usize>,
+    pub(super) weight: Option<usize>,
     /// Where each line is the difference of two receivers' times, that of the second.
     pub(super) reference: Option<usize>,
     /// Where each line may be there several times, as in Raven's selection tables, its number.
@@ -32,6 +33,7 @@ struct Roles {
     values: Vec<usize>,
     times: Vec<usize>,
     sigmas: Vec<usize>,
+    weights: Vec<usize>,
     references: Vec<usize>,
     /// Further candidates, as far as the options say them.
     candidates: Vec<usize>,
@@ -53,13 +55,14 @@ impl Roles {
         };
         let (receivers, transmitters, values) = (found(&[&RECEIVER]), found(&[&TRANSMITTER]), found(&[&LENGTH, &TIME]));
         let times = values.iter().copied().filter(|&k| headings[k].may_be(&TIME)).collect();
-        let (sigmas, references) = (under(SIGMA.sure), under(REFERENCE.sure));
-        Roles { receivers, transmitters, values, times, sigmas, references, candidates: Vec::new(), sure }
+        let (sigmas, weights, references) = (under(SIGMA.sure), under(WEIGHT.sure), under(REFERENCE.sure));
+        Roles { receivers, transmitters, values, times, sigmas, weights, references, candidates: Vec::new(), sure }
     }
 
     /// Puts what the options say in the place of what headings do.
     fn given(&mut self, said: &[(Role, usize)]) {
-        for of in [&mut self.receivers, &mut self.transmitters, &mut self.values, &mut self.times, &mut self.sigmas] {
+        let (nodes, measured) = ([&mut self.receivers, &mut self.transmitters], [&mut self.values, &mut self.times]);
+        for of in nodes.into_iter().chain(measured).chain([&mut self.sigmas, &mut self.weights]) {
             of.retain(|k| said.iter().all(|(_, given)| given != k));
         }
         let given = |role: Role| said.iter().filter(move |(given, _)| *given == role).map(|(_, k)| *k);
@@ -71,6 +74,7 @@ impl Roles {
         put(Role::Receiver, &mut self.receivers);
         put(Role::Transmitter, &mut self.transmitters);
         put(Role::Sigma, &mut self.sigmas);
+        put(Role::Weight, &mut self.weights);
         put(Role::Reference, &mut self.references);
         put(Role::Candidate, &mut self.candidates);
         let values: Vec<usize> = given(Role::Value).chain(given(Role::Time)).collect();
@@ -186,13 +190,13 @@ pub(super) fn list_columns(
             ),
         });
     }
-    let Roles { receivers, transmitters, mut values, mut times, sigmas, references, candidates, .. } = roles;
+    let Roles { receivers, transmitters, mut values, mut times, sigmas, weights, references, candidates, .. } = roles;
     if let (true, Some((first, is_time))) = (values.is_empty(), first_of_numbered(&headings)) {
         values.push(first);
         times.extend(is_time.then_some(first));
     }
     let needed = [("receiver", &receivers), ("transmitter", &transmitters), ("value", &values)];
-    for (role, found) in needed.iter().chain(&[("sigma", &sigmas), ("reference", &references)]) {
+    for (role, found) in needed.iter().chain(&[("sigma", &sigmas), ("weight", &weights), ("reference", &references)]) {
         if let [a, b, ..] = found.as_slice() {
             return Err(bad(format!(
                 "the columns {:?} and {:?} may both be the {role}; rename one, or say which (--columns {role}={})",
@@ -208,7 +212,15 @@ pub(super) fn list_columns(
         let which = missing.iter().map(|role| format!("{role}=...")).collect::<Vec<_>>().join(",");
         return Err(bad(format!("no column is the {}; say which (--columns {which})", missing.join(" or the "))));
     };
-    let sigma = sigmas.first().copied();
+    let (sigma, weight) = (sigmas.first().copied(), weights.first().copied());
+    if let Some((k, other)) = sigma.zip(weight) {
+        return Err(bad(format!(
+            "the columns {:?} and {:?} say twice how sure a measurement is; leave one out (--columns ignore={})",
+            cells[k],
+            cells[other],
+            quoted(&cells[other])
+        )));
+    }
     let wrong = |problem: String| ReadError::Unit { file: file.to_string(), line, problem };
     let is_time = times.contains(value);
     check_unit("column", &cells[*value], headings[*value].unit, is_time, units).map_err(wrong)?;
@@ -232,16 +244,17 @@ pub(super) fn list_columns(
                 .into(),
         ));
     }
-    if reference.is_some() && sigma.is_some() {
+    if reference.is_some() && (sigma.is_some() || weight.is_some()) {
         return Err(bad(
-            "standard deviations of differences are not read; leave out that column (--columns ignore=...)".into(),
+            "standard deviations and weights of differences are not read; leave out that column (--columns ignore=...)"
+                .into(),
         ));
     }
     let headed = |name: &str| headings.iter().position(|heading| heading.name == name);
     let selection = headed("view").and(headed("selection"));
     let (receiver, transmitter, value) = (*receiver, *transmitter, *value);
     let (repeats, count) = (options.candidates, cells.len());
-    Ok(Some(Columns { receiver, transmitter, value, further, repeats, sigma, reference, selection, count }))
+    Ok(Some(Columns { receiver, transmitter, value, further, repeats, sigma, weight, reference, selection, count }))
 }
 
 /// Refuses columns of a matrix that hold something else than measurements.

@@ -72,8 +72,10 @@ pub(super) fn list(
         if value.is_nan() && !others.is_empty() {
             value = others.remove(0);
         }
-        let sigma = columns.sigma.map(|k| numbers.number(&cells[k]).map_err(|why| not_a_number(k, why))).transpose()?;
-        let sigma = sigma.map_or(1.0, |sigma| sigma * factor);
+        let mut number = |k: usize| numbers.number(&cells[k]).map_err(|why| not_a_number(k, why));
+        let sigma = columns.sigma.map(&mut number).transpose()?;
+        let weight = columns.weight.map(&mut number).transpose()?;
+        let sigma_or_weight = weight.unwrap_or_else(|| sigma.map_or(1.0, |sigma| sigma * factor));
         let at = (receivers.index(receiver), transmitters.index(transmitter));
         let reference = columns.reference.map(|k| &cells[k]);
         let second = reference.map(|reference| receivers.index(reference));
@@ -91,7 +93,7 @@ pub(super) fn list(
             continue;
         }
         match entries.entry(at) {
-            Vacant(free) => _ = free.insert(Entry { value, sigma, line }),
+            Vacant(free) => _ = free.insert(Entry { value, sigma_or_weight, line }),
             Occupied(earlier) if !columns.repeats => {
                 return Err(bad(format!(
                     "receiver {receiver}, transmitter {transmitter} is there twice, on line {} too; keep one measurement of each pair, or \
@@ -99,10 +101,11 @@ pub(super) fn list(
                     earlier.get().line
                 )));
             }
-            Occupied(earlier) if earlier.get().sigma != sigma => {
+            Occupied(earlier) if earlier.get().sigma_or_weight != sigma_or_weight => {
                 return Err(bad(format!(
-                    "receiver {receiver}, transmitter {transmitter} has another standard deviation than on line {}; give one for all \
+                    "receiver {receiver}, transmitter {transmitter} has another {} than on line {}; give one for all \
                      candidates of a pair",
+                    if weight.is_some() { "weight" } else { "standard deviation" },
                     earlier.get().line
                 )));
             }
@@ -125,16 +128,18 @@ pub(super) fn list(
     let measured = measured.map_err(wrap)?.with_names(receivers.names, transmitters.names).map_err(wrap)?;
     let measured = measured.with_candidates(further).map_err(wrap)?;
     refuse_thousands(&numbers, separator, units, &measured, file)?;
-    if columns.sigma.is_none() {
-        return Ok(measured);
+    let sigma_or_weight = |i: usize, j: usize| entries.get(&(i, j)).map_or(f64::NAN, |entry| entry.sigma_or_weight);
+    match (columns.sigma, columns.weight) {
+        (Some(_), _) => measured.with_sigma_of(sigma_or_weight).map_err(wrap),
+        (_, Some(_)) => measured.with_weight_of(sigma_or_weight).map_err(wrap),
+        _ => Ok(measured),
     }
-    measured.with_sigma_of(|i, j| entries.get(&(i, j)).map_or(f64::NAN, |entry| entry.sigma)).map_err(wrap)
 }
 
-/// A measurement, its standard deviation and where it stands.
+/// A measurement, its standard deviation or its weight, and where it stands.
 struct Entry {
     value: f64,
-    sigma: f64,
+    sigma_or_weight: f64,
     line: u64,
 }
 

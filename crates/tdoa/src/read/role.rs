@@ -18,6 +18,8 @@ pub enum Role {
     Sigma,
     /// Names of the receivers whose times are taken off.
     Reference,
+    /// Its weight: one over the square of its standard deviation, in any unit.
+    Weight,
     /// Something else, which is not read.
     Ignore,
 }
@@ -32,6 +34,7 @@ const ROLES: &[(&str, Role)] = &[
     ("time", Role::Time),
     ("candidate", Role::Candidate),
     ("sigma", Role::Sigma),
+    ("weight", Role::Weight),
     ("reference", Role::Reference),
     ("ignore", Role::Ignore),
 ];

@@ -39,6 +39,13 @@ fn list_of_measurements() {
     let f = parse("receiver,transmitter,value,sigma\nm1,e1,1.5,0.1\nm2,e2,2.5,0.2\nm1,e2,,\n").unwrap();
     assert_eq!((f.receivers(), f.transmitters(), f.observed()), (2, 2, 2));
     assert_eq!((f.get(0, 0), f.sigma(0, 0), f.get(0, 1)), (Some(1.5), Some(0.1), None));
+    assert!(f.knows_sigmas());
+    // Deviations as 1 to 2 to 4, and a measurement that does not count.
+    let text = "mic,event,value,weight\na,d,1,0.16\na,e,2,0.04\nb,d,3,0.01\nb,e,4,0\n";
+    let f = parse(text).unwrap();
+    let shares = [f.sigma(0, 0), f.sigma(0, 1), f.sigma(1, 0), f.get(1, 1)];
+    assert_eq!((shares, f.knows_sigmas()), ([Some(0.5), Some(1.0), Some(2.0), None], false));
+    assert_eq!([f.weight(0, 0), f.weight(1, 0)], [Some(4.0), Some(0.25)]);
     let f = parse("Time,Event,Receiver\n3,e,m\n").unwrap();
     assert_eq!((f.get(0, 0), f.sigma(0, 0)), (Some(3.0), None));
 }
@@ -59,6 +66,9 @@ fn mistakes_are_placed() {
     assert!(message("receiver,transmitter,value\na,b,1\na,b,2\n").contains("line 3"));
     assert!(message("receiver,transmitter,value\na,b\n").contains("line 2"));
     assert!(message("receiver,transmitter,value,sigma\na,b,1,-1\n").contains("must be positive"));
+    assert!(message("receiver,transmitter,value,weight\na,b,1,-1\n").contains("must be finite and not negative"));
+    assert!(message("receiver,transmitter,value,weight\na,b,1,0\n").contains("all weights are zero"));
+    assert!(message("receiver,transmitter,value,sigma,weight\na,b,1,1,1\n").contains("say twice"));
     assert!(message("id,a,a\nx,1,2\n").contains("named \"a\""));
     assert!(matches!(read_csv(&b"1,2\n\xff\xfe"[..], "f", Units::Metres), Err(ReadError::NotText { line: 2, .. })));
     let units = Units::Seconds { speed: -1.0 };

@@ -164,6 +164,9 @@ pub(super) const TIME: Words = Words {
 pub(super) const SIGMA: Words =
     Words { sure: &["sigma", "std", "stddev", "std_dev", "standard_deviation", "standardabweichung"], weak: &[] };
 
+/// One over squares of standard deviations, in any unit.
+pub(super) const WEIGHT: Words = Words { sure: &["weight", "weights", "gewicht"], weak: &[] };
+
 /// The receiver whose time is taken off that of another.
 pub(super) const REFERENCE: Words =
     Words { sure: &["reference", "ref", "reference_receiver", "ref_receiver"], weak: &[] };

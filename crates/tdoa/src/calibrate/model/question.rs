@@ -121,7 +121,7 @@ impl Question<'_> {
         let located = whole.receivers.iter().flatten().count() + whole.transmitters.iter().flatten().count();
         // Heights, but for those of a plane that moves.
         let heights = located.saturating_sub(3).max(1) as f64;
-        let given = options.sigma.is_some() || measured.has_sigmas();
+        let given = options.sigma.is_some() || measured.knows_sigmas();
         let quantile = if given {
             ChiSquared::new(heights).ok().map(|all| all.inverse_cdf(QUANTILE))
         } else {

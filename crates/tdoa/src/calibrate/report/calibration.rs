@@ -51,11 +51,12 @@ pub struct Calibration<const D: usize = 2> {
     #[serde(flatten)]
     pub residuals: Residuals,
     /// Standard deviation of the measurements: as given, or estimated from the inliers. If
-    /// measurements carry their own deviations, a factor on those.
+    /// measurements carry their own deviations or weights, a factor on those: with weights, the deviation of one of median
+    /// weight.
     pub sigma: f64,
     /// Whether `sigma` was estimated.
     pub sigma_estimated: bool,
-    /// Whether measurements carry their own deviations, so that `sigma` is a factor on those.
+    /// Whether measurements carry their own deviations or weights, so that `sigma` is a factor on those.
     #[serde(default)]
     pub sigma_is_factor: bool,
     /// Root mean square of the inliers' residuals.
@@ -102,7 +103,7 @@ pub struct Calibration<const D: usize = 2> {
     /// alternatives. None in the plane.
     #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
     pub mirror_images: Vec<MirrorImage<D>>,
-    /// Whether the measurements fit a network of these dimensions. This is false, too, where more than a third of them are
+    /// Whether the measurements fit a network of these dimensions. This is false, too, where more than three tenths of them are
     /// outliers and fewer than three starts of the search ended in the network.
     #[serde(default = "agree")]
     pub fits: bool,

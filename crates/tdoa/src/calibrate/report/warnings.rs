@@ -82,7 +82,7 @@ impl<const D: usize> State<'_, D> {
             let all = self.observations.len();
             warnings.push(format!(
                 "the measurements do not fit a network {}: {} of {all} are outliers, and fewer starts of the search agree than it takes to be sure \
-                 of that; at most about a third of the measurements may be wrong",
+                 of that; at most about three tenths of the measurements may be wrong",
                 space(D),
                 all - judged.kept.len()
             ));
