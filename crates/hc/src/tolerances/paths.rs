@@ -29,6 +29,8 @@ pub(crate) mod tracking {
     /// Parts of a path below this share of the region in which Newton's method converges do not
     /// bound the step by their radius alone.
     pub(crate) const FAINT: f64 = 0.01;
+    /// A point whose coordinates are all below this share of their weights, squared, is zero up to rounding errors.
+    pub(crate) const NO_SIZE: f64 = 1e-16;
     /// The radius of faint parts counts at most so many times.
     pub(crate) const FAINT_REACH: f64 = 10.0;
     /// In logarithmic time a coordinate counts as `exp(v t)` if its derivatives are not larger than those for

@@ -116,7 +116,10 @@ impl<S: Lane> Kernel for Radius<'_, S> {
             radius.as_mut()[l] = if ratio.is_finite() && ratio > 0.0 {
                 ratio
             } else if largest > 0.0 {
-                s0 / largest
+                // A point that is zero says nothing of the scale of the path; that of the derivatives does, if of odd
+                // orders alone, as where signs of all coordinates may be changed.
+                let odd = if s0 < tracking::NO_SIZE { (s1 / s3).sqrt() } else { 0.0 };
+                if odd > s0 / largest { odd } else { s0 / largest }
             } else {
                 f64::INFINITY
             };

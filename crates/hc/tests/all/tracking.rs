@@ -457,3 +457,17 @@ fn a_tracker_heeds_its_monitor() {
     tracker.track(&path, &reals(&[1.0, -1.0]), 0..2, &mut paths);
     assert_eq!((paths.len(), paths.count(PathEnd::Cancelled)), (4, 2));
 }
+
+/// Where all coordinates are zero and even derivatives vanish, the size of the point says nothing of the scale of its
+/// path.
+#[test]
+fn a_path_leaves_zero() {
+    let family = Family::from_formulas(&["x"], &["a"], &["x^3 - 3*x + a"]).unwrap();
+    let real = |x: f64| [Complex64::new(x, 0.0)];
+    let ends =
+        track(family.program(), &Segment::new(&real(0.0), &real(1.0)), &real(0.0), &[0], &TrackerOptions::default());
+    // x = 2 cos(4 pi / 9) solves x^3 - 3 x = 2 cos(4 pi / 3).
+    let expected = 2.0 * (4.0 * std::f64::consts::PI / 9.0).cos();
+    assert_eq!(ends.results()[0].end, PathEnd::Success);
+    assert!((ends.point(0)[0] - expected).norm() < 1e-10 && ends.results()[0].accepted < 10);
+}
