@@ -84,7 +84,21 @@ fn followed<E: Evaluate>(
     monitor: &Monitor,
 ) -> Ends {
     let count = fibre.len();
-    follow(Route { trackers, start: fibre, count, target, excess, options, monitor, record: None, lead: None }, false)
+    follow(
+        Route {
+            trackers,
+            start: fibre,
+            count,
+            target,
+            excess,
+            options,
+            monitor,
+            record: None,
+            lead: None,
+            has_other_ways: false,
+        },
+        false,
+    )
 }
 
 /// The polynomials of a member, and the supports and coefficients of those that are tracked.

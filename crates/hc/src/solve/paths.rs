@@ -57,6 +57,8 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) record: Option<Part<'a>>,
     /// Who hands out paths to other ranks.
     pub(super) lead: Option<&'a Lead<'a>>,
+    /// Whether solutions that these paths miss are found otherwise if there is but one unknown.
+    pub(super) has_other_ways: bool,
 }
 
 /// Follows the paths of a route; those that share a start or a regular end, have crossed or are
@@ -154,7 +156,8 @@ impl<E: Evaluate, S: Source<E>> Work for CoefficientStage<'_, '_, E, S> {
 
     fn is_hopeless(&mut self, level: u32, before: usize, _: usize) -> bool {
         // In one unknown there are better ways to all roots than tracking again.
-        level == 0 && (self.route.trackers.system().variables() == 1 || are_hopeless(before, self.ends.paths))
+        let is_needless = self.route.has_other_ways && self.route.trackers.system().variables() == 1;
+        level == 0 && (is_needless || are_hopeless(before, self.ends.paths))
     }
 
     fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {

@@ -42,7 +42,18 @@ impl Surroundings {
     ) -> Route<'a, 'e, E, Fibre> {
         let Surroundings { excess, options, monitor } = self;
         let count = start.len();
-        Route { trackers, start, count, target, excess, options, monitor, record: None, lead: None }
+        Route {
+            trackers,
+            start,
+            count,
+            target,
+            excess,
+            options,
+            monitor,
+            record: None,
+            lead: None,
+            has_other_ways: true,
+        }
     }
 }
 

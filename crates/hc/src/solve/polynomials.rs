@@ -175,7 +175,18 @@ fn serve_all(
         let Some(start) = unless_cancelled(system)? else { continue };
         let (count, target) = (from.paths, &from.target[..]);
         let (trackers, start) = (&Trackers::new(&from.system), &start);
-        let route = Route { trackers, start, count, target, excess, options, monitor, record: None, lead: None };
+        let route = Route {
+            trackers,
+            start,
+            count,
+            target,
+            excess,
+            options,
+            monitor,
+            record: None,
+            lead: None,
+            has_other_ways: true,
+        };
         serve(worker, &task, route)?;
     }
     Ok(())
@@ -216,7 +227,10 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
             let (trackers, start, lead) = (&Trackers::new(&from.system), &start, context.lead);
             let record = context.checkpoint.map(|checkpoint| Part { checkpoint, number });
             let (count, target, options) = (from.paths, &from.target[..], &*options);
-            follow(Route { trackers, start, count, target, excess, options, monitor, record, lead }, trial)
+            follow(
+                Route { trackers, start, count, target, excess, options, monitor, record, lead, has_other_ways: true },
+                trial,
+            )
         };
         if let Some(error) = context.checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());

@@ -471,3 +471,18 @@ fn a_path_leaves_zero() {
     assert_eq!(ends.results()[0].end, PathEnd::Success);
     assert!((ends.point(0)[0] - expected).norm() < 1e-10 && ends.results()[0].accepted < 10);
 }
+
+/// Paths that jump are tracked again in one unknown too: there is no start system from which they could be sought anew.
+#[test]
+fn all_roots_of_cubics_are_reached() {
+    let family = Family::from_formulas(&["x"], &["a", "b"], &["x^3 + a*x + b"]).unwrap();
+    let fibre = family.monodromy(&MonodromyOptions::new()).unwrap().fibre;
+    assert_eq!(fibre.len(), 3);
+    let targets: Vec<[f64; 2]> =
+        (0..3000).map(|k| [-2.0 + f64::from(k % 60) * 0.0507, -1.51 + f64::from(k / 60) * 0.0607]).collect();
+    for (found, [a, b]) in family.track(&fibre, &targets).run().unwrap().iter().zip(&targets) {
+        assert_eq!((found.paths.failed, found.len()), (0, 3), "{a} {b}");
+        let real = if 4.0 * a.powi(3) + 27.0 * b * b < 0.0 { 3 } else { 1 };
+        assert_eq!(found.n_real(), real, "{a} {b}");
+    }
+}
