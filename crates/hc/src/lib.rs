@@ -20,7 +20,8 @@
 //! * [`Run`]: any of these, watched and stopped by a [`Monitor`], on a number of threads, recorded
 //!   in a [`checkpoint`] from which it continues after it was killed, on several [`ranks`].
 //!
-//! [`witness`] decomposes solution sets of positive dimension.
+//! [`sweep`] has the real solutions of a family over a grid of parameters, as branches with their folds; [`witness`]
+//! decomposes solution sets of positive dimension.
 //!
 //! The path tracker is in [`tracker`]. Its homotopies, each a system and a path in its parameters,
 //! are in [`homotopy`]. [`family`] has the layer below [`Family`], for your own programs; [`start`]
@@ -83,6 +84,7 @@ mod singular;
 mod solve;
 pub mod start;
 mod store;
+pub mod sweep;
 mod threads;
 mod tolerances;
 pub mod tracker;

@@ -27,10 +27,14 @@ pub enum Stage {
     Search,
     /// Points are certified.
     Proofs,
+    /// Cells of a sweep are filled.
+    Cells,
+    /// Neighbouring cells of a sweep are joined.
+    Branches,
 }
 
 /// In the order of their numbers.
-const STAGES: [Stage; 8] = [
+const STAGES: [Stage; 10] = [
     Stage::Preparing,
     Stage::MixedCells,
     Stage::Start,
@@ -39,6 +43,8 @@ const STAGES: [Stage; 8] = [
     Stage::Loop,
     Stage::Search,
     Stage::Proofs,
+    Stage::Cells,
+    Stage::Branches,
 ];
 
 /// The progress of the work.
@@ -47,7 +53,7 @@ const STAGES: [Stage; 8] = [
 pub struct Progress {
     /// The stage of the work.
     pub stage: Stage,
-    /// Paths of this stage that have ended, or mixed cells found.
+    /// Paths of this stage that have ended, mixed cells found, or cells of a grid that are done.
     pub done: u64,
     /// Paths of this stage; zero if their number is not known.
     pub total: u64,
@@ -67,6 +73,8 @@ impl fmt::Display for Progress {
             Stage::Paths => write!(f, "paths, {} of them at regular solutions", self.counted),
             Stage::Endgame => f.write_str("paths through the endgame"),
             Stage::Proofs => write!(f, "points, {} of them certified", self.counted),
+            Stage::Cells => f.write_str("cells of the grid"),
+            Stage::Branches => f.write_str("cells joined to their neighbours"),
             Stage::Search => write!(f, "starts, {} of them agree", self.counted),
             Stage::Loop => write!(f, "paths round a loop, {} so far", counted(self.total / 3, "solution")),
         }

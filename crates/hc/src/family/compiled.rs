@@ -129,6 +129,11 @@ impl Family {
         values.iter().all(|z| z.norm() > tolerance)
     }
 
+    /// Whether the family states nothing of its solutions but its equations, as many as unknowns.
+    pub(crate) fn states_equations_alone(&self) -> bool {
+        self.overdetermined.is_none() && self.nonzero.equations() == 0
+    }
+
     /// Checks that a fibre has the family's numbers of parameters and unknowns.
     ///
     /// # Errors

@@ -80,3 +80,26 @@ pub(crate) mod witness {
     /// A plane solves the equations if residuals far along it are less than this.
     pub(crate) const FAR_SOLVED: f64 = 1e-4;
 }
+
+/// Thresholds of [sweeps](crate::sweep). The number of solutions of a cell rests on the first three.
+pub(crate) mod sweeps {
+    /// Where another solution is within this share of the size of a solution, or of its conjugate, proofs tell them
+    /// apart, not digits: solutions of condition 1e8 are known to as many.
+    pub(crate) const NEAR: f64 = 1e-6;
+    /// A coordinate that is less than this times the condition, as a share of the largest, may be zero.
+    pub(crate) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+    /// A coordinate of a multiple solution that is less than this share of the largest may be zero.
+    pub(crate) const BLURRED: f64 = 1e-6;
+    /// The end of a path between cells is the solution there that is nearest, if it is within this share of the sizes
+    /// that the coordinates have in both cells,
+    pub(crate) const ARRIVED: f64 = 1e-6;
+    /// and nearer than this share of the distance to the next one.
+    pub(crate) const ALONE: f64 = 0.1;
+    /// Two branches meet where the ways along them break off within this share of the way between two cells,
+    pub(crate) const MEETING_TIME: f64 = 1e-2;
+    /// and at points that are within this share of the sizes of the coordinates: at a fold, their distance is of the
+    /// order of the root of the way that is left.
+    pub(crate) const MEETING_PLACE: f64 = 1e-2;
+    /// A branch goes to infinity where the way along it breaks off at coordinates so many times as large as in the cells.
+    pub(crate) const FAR: f64 = 1e4;
+}

@@ -11,7 +11,7 @@ mod fibres;
 mod paths;
 mod singular;
 
-pub(crate) use fibres::{families, witness};
+pub(crate) use fibres::{families, sweeps, witness};
 pub(crate) use paths::{
     LoopTolerances, QUICK, QuickTolerances, SINGLES, endgame, ends, proofs, quick_ends, refinement, same, tracking,
 };
