@@ -12,6 +12,7 @@ mod numbers;
 mod points;
 mod report;
 mod solve;
+mod sweep;
 mod track;
 mod watch;
 
@@ -42,6 +43,7 @@ enum Command {
     MixedVolume(mixed_volume::Arguments),
     Monodromy(monodromy::Arguments),
     Solve(solve::Arguments),
+    Sweep(sweep::Arguments),
     Track(track::Arguments),
 }
 
@@ -59,7 +61,7 @@ impl Program for Arguments {
             Command::Track(arguments) => Some(&arguments.ranks),
             Command::MixedVolume(arguments) => Some(&arguments.ranks),
             Command::Monodromy(arguments) => Some(&arguments.ranks),
-            Command::Certify(_) | Command::Codegen(_) | Command::Decompose(_) => None,
+            Command::Certify(_) | Command::Codegen(_) | Command::Decompose(_) | Command::Sweep(_) => None,
         }
     }
 
@@ -72,6 +74,7 @@ impl Program for Arguments {
             Command::Certify(arguments) => certify::run(arguments),
             Command::Codegen(arguments) => codegen::run(arguments),
             Command::Decompose(arguments) => decompose::run(arguments),
+            Command::Sweep(arguments) => sweep::run(arguments),
         }
     }
 

@@ -77,13 +77,13 @@ fn sign(parts: &str) -> usize {
 }
 
 /// A decimal number; the words that Rust reads as numbers are none here.
-fn real(text: &str) -> Option<f64> {
+pub(crate) fn real(text: &str) -> Option<f64> {
     let is_decimal = text.chars().all(|c| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E'));
     if is_decimal { text.parse().ok() } else { None }
 }
 
 /// What stands there, shortened.
-fn shown(word: &str) -> String {
+pub(crate) fn shown(word: &str) -> String {
     let start: String = word.chars().take(40).collect();
     format!("`{start}{}`", if start.len() < word.len() { "..." } else { "" })
 }

@@ -12,6 +12,7 @@ mod hc_interrupt;
 mod hc_mpi;
 mod hc_solve;
 mod hc_standard_input;
+mod hc_sweep;
 mod links;
 #[cfg(unix)]
 mod mpi;
