@@ -102,6 +102,7 @@ fn no_page_is_left_out() {
         "tracker.md",
         "checks.md",
         "python.md",
+        "sweeps.md",
     ];
     let mut pages: Vec<String> = std::fs::read_dir(root().join("docs/guide"))
         .expect("folder")
@@ -148,6 +149,29 @@ fn solving_a_polynomial_system() {
             let (re, im) = (z[0].as_f64().expect("number"), z[1].as_f64().expect("number"));
             assert!((re.abs() - 0.8f64.sqrt()).abs() < 1e-12 && im.abs() < 1e-12);
         }
+    }
+}
+
+#[test]
+fn sweeping_a_family() {
+    let folder = tempfile::tempdir().expect("folder");
+    let page = "docs/guide/sweeps.md";
+    let printed = run_page(page, folder.path());
+    for name in ["branches.svg", "branches.csv", "map.svg", "cells.csv", "sweep.json"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+    // What the page says is printed: four states, which the formula of the family has, and rest.
+    let text = std::fs::read_to_string(root().join(page)).expect("page");
+    let said: Vec<&str> = printed[1].1.lines().take(5).collect();
+    assert!(said.len() == 5 && said.iter().all(|line| text.contains(line)), "{said:?}");
+    let states = |k: u32| {
+        let w = 0.9 + 0.2 * f64::from(k) / 299.0;
+        let (d, rest) = (1.0 - w * w, (0.05f64.powi(2) - (0.01 * w).powi(2)).sqrt());
+        1 + 2 * [-d - rest, -d + rest].iter().filter(|r| **r > 0.0).count()
+    };
+    for (line, count) in said[1..4].iter().zip([1, 3, 5]) {
+        let cells = (0..300).filter(|&k| states(k) == count).count();
+        assert!(line.starts_with(&format!("  {cells} cells with {count} real")), "{line}");
     }
 }
 
