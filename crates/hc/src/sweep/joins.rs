@@ -2,8 +2,8 @@
 //! the parameters.
 //!
 //! Paths are believed where they make a bijection. Otherwise they are tracked in both directions, and believed where
-//! they come back. What is left over must be explained: two branches that meet, which is a fold, or a branch that goes
-//! to infinity. Where it is not, as between two folds of which neither partner reaches a cell, the way is halved.
+//! they come back. What is left over must be explained: two branches that meet, which is a fold, a branch that goes to
+//! infinity, or one that goes through a multiple point. Where it is not, as between two folds of which neither partner reaches a cell, the way is halved.
 
 use super::cell::{Cell, RealSolution};
 use super::grid::Grid;
@@ -131,17 +131,28 @@ impl<'a> Joiner<'a> {
         let [there, back] = [both.next().unwrap_or_default(), both.next().unwrap_or_default()];
         let paths = paths + there.len() + back.len();
         let comes_back = |way: &Way| back.iter().any(|other| way.to == Some(other.from) && other.to == Some(way.from));
-        let pairs: Vec<[usize; 2]> =
+        let mut pairs: Vec<[usize; 2]> =
             there.iter().filter(|way| comes_back(way)).filter_map(|way| Some([way.from, way.to?])).collect();
-        let left = |ways: Vec<Way>, side: usize| -> Vec<Way> {
+        let left = |ways: Vec<Way>, side: usize, pairs: &[[usize; 2]]| -> Vec<Way> {
             ways.into_iter().filter(|way| pairs.iter().all(|pair| pair[side] != way.from)).collect()
         };
         let sizes = sizes(a, b);
-        let kinds = [(left(there, 0), b), (left(back, 1), a)].map(|(ways, other)| kind(&ways, &other.cell, &sizes));
-        let kind = kinds.into_iter().flatten().max();
-        if kind == Some(BreakKind::Unexplained) && halved < HALVINGS {
-            return self.halved(a, b, halved + 1, paths).unwrap_or(Joined { pairs, kind, paths });
+        let reason = |there: &[Way], back: &[Way]| kind(there, &b.cell, &sizes).max(kind(back, &a.cell, &sizes));
+        let [there, back] = [left(there, 0, &pairs), left(back, 1, &pairs)];
+        let kind = reason(&there, &back);
+        if kind != Some(BreakKind::Unexplained) {
+            return Joined { pairs, kind, paths };
         }
+        let halves = if halved < HALVINGS { self.halved(a, b, halved + 1, paths) } else { None };
+        if let Some(joined) = halves
+            && joined.kind != Some(BreakKind::Unexplained)
+        {
+            return joined;
+        }
+        pairs.extend(through(&there, &back, &sizes));
+        pairs.sort_unstable();
+        let [there, back] = [left(there, 0, &pairs), left(back, 1, &pairs)];
+        let kind = reason(&there, &back);
         Joined { pairs, kind, paths }
     }
 
@@ -214,6 +225,38 @@ fn sizes(a: &Site<'_>, b: &Site<'_>) -> Sizes {
     Sizes::of(a.cell.solutions.iter().chain(&b.cell.solutions).map(|s| &s.value[..]))
 }
 
+impl Way {
+    /// Whether two ways break off at one point. `shares` are what is left of them, or of one and the part of the other
+    /// that lies behind it.
+    fn meets(&self, other: &Way, shares: [f64; 2], sizes: &Sizes) -> bool {
+        self.breaks_off()
+            && other.breaks_off()
+            && (shares[0] - shares[1]).abs() <= sweeps::MEETING_TIME
+            && sizes.distance(&self.end, &other.end) <= sweeps::MEETING_PLACE
+    }
+
+    fn breaks_off(&self) -> bool {
+        self.to.is_none() && self.result.end != PathEnd::Success
+    }
+}
+
+/// Branches that go through a multiple point, at which complex solutions meet them: just one way from either side breaks
+/// off there.
+fn through(there: &[Way], back: &[Way], sizes: &Sizes) -> Vec<[usize; 2]> {
+    let opposite = |a: &Way, b: &Way| !sizes.is_far(&a.end) && a.meets(b, [a.result.t, 1.0 - b.result.t], sizes);
+    let beside = |ways: &[Way], a: &Way| ways.iter().filter(|b| a.meets(b, [a.result.t, b.result.t], sizes)).count();
+    let mut pairs = Vec::new();
+    for a in there.iter().filter(|a| beside(there, a) == 1) {
+        let mut others = back.iter().filter(|b| opposite(a, b));
+        if let (Some(b), None) = (others.next(), others.next())
+            && beside(back, b) == 1
+        {
+            pairs.push([a.from, b.from]);
+        }
+    }
+    pairs
+}
+
 /// Why paths do not reach the cell `other`; `None` if there are no paths.
 fn kind(ways: &[Way], other: &Cell, sizes: &Sizes) -> Option<BreakKind> {
     let multiple: Vec<&RealSolution> = other.solutions.iter().filter(|s| s.multiplicity > 1).collect();
@@ -223,12 +266,8 @@ fn kind(ways: &[Way], other: &Cell, sizes: &Sizes) -> Option<BreakKind> {
             way.result.t <= sweeps::MEETING_TIME
                 && multiple.iter().any(|s| sizes.distance(&way.end, &s.value) <= sweeps::MEETING_PLACE)
         };
-        let meets = |other: &Way| {
-            other.to.is_none()
-                && (way.result.t - other.result.t).abs() <= sweeps::MEETING_TIME
-                && sizes.distance(&way.end, &other.end) <= sweeps::MEETING_PLACE
-        };
-        let own = if way.to.is_some() || way.result.end == PathEnd::Success {
+        let meets = |other: &Way| way.meets(other, [way.result.t, other.result.t], sizes);
+        let own = if !way.breaks_off() {
             BreakKind::Unexplained
         } else if sizes.is_far(&way.end) {
             BreakKind::Infinity

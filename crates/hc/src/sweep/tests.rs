@@ -199,6 +199,18 @@ fn a_branch_goes_to_infinity_and_comes_back() {
     assert!(found.breaks.iter().all(|b| b.kind == BreakKind::Infinity), "{:?}", found.breaks);
 }
 
+/// The real cube root is one branch, though its slope is infinite at zero.
+#[test]
+fn a_branch_goes_through_a_multiple_point() {
+    let family = Family::from_formulas(&["x"], &["a", "b"], &["x^3 + b*x - a"]).unwrap();
+    let grid = Grid::new(&family, vec![axis("a", -1.0, 2.0, 8)], &[("b", 0.0)]).unwrap();
+    let found = sweep(&family, &fibre(&family, 3), &grid);
+    assert_eq!((counts(&found), found.branches, found.breaks.len()), (vec![1; 8], 1, 0));
+    for (k, cell) in found.cells.iter().enumerate() {
+        assert!((cell.solutions[0].value[0] - grid.values(k)[0].cbrt()).abs() < 1e-12);
+    }
+}
+
 /// Two solutions `1 +- sqrt(a)` that are 2e-7 apart are real for positive `a` and conjugates for negative `a`.
 #[test]
 fn near_pairs_are_certified() {
