@@ -8,6 +8,7 @@ use crate::calibrate::judge::lines_and_planes::turning;
 use crate::calibrate::judge::mirror_images::{Mirrored, Sides, differs_in_sides};
 use crate::calibrate::judge::neighbours::{BEYOND, Neighbour, Reason, widen};
 use crate::calibrate::judge::orientation::looks_transposed;
+use crate::calibrate::judge::raised::may_be_raised;
 use crate::calibrate::judge::weak_nodes::{WeakNodes, doubtful_receivers};
 use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays};
 use crate::calibrate::search::deviation::{inlier_deviation, typical_deviation};
@@ -61,6 +62,8 @@ pub(crate) struct Judged<'s, const D: usize> {
     /// Receivers that have no place, since their inliers may agree by chance.
     pub(crate) doubtful: Vec<usize>,
     pub(crate) weak: WeakNodes,
+    /// Whether transmitters may be raised, where heights are told by what is expected of them.
+    pub(crate) raised: bool,
     /// Transmitters of which the direction alone is told.
     pub(crate) far: Vec<Far<D>>,
     /// Kinds of nodes that lie in one line of space, about which the others may turn.
@@ -181,6 +184,11 @@ impl<const D: usize> State<'_, D> {
         mirrored.retain(|image| image.kind == NodeKind::Transmitters || !placeless(&image.index));
         let turning = turning(best, &uncertainty);
         let weak = WeakNodes::new(best, &uncertainty, &far);
+        // Where heights are told by what is expected of them, the network lies about the plane z = 0.
+        let raised = self.plane_distances.is_some() && !self.is_held() && !uncertainty.receivers.is_empty() && {
+            let variance = uncertainty.receivers.iter().map(trace).sum::<f64>() / uncertainty.receivers.len() as f64;
+            may_be_raised(best, variance.max(0.0).sqrt())
+        };
         let (others, agreeing) = self.others(&apart, &mirrored, &far);
         let scattered = self.weak.is_none() && agreeing < SETTLED.min(options.search.max_starts) && {
             let is_elsewhere = |other: &&Other<D>| {
@@ -189,7 +197,7 @@ impl<const D: usize> State<'_, D> {
             };
             others.iter().filter(is_elsewhere).count() > agreeing
         };
-        let open = ellipse_radius.is_some() && weak.are_most() || !turning.is_empty() || scattered;
+        let open = ellipse_radius.is_some() && weak.are_most() || !turning.is_empty() || scattered || raised;
         let determined = !open && !transposed && 2 * doubtful.len() < best.receivers.len();
         let receivers_agree = apart.is_empty() && others.iter().all(|other| same_receivers(&other.network, best));
         let transmitters_agree = apart.is_empty() && others.iter().all(|other| same_transmitters(&other.network, best));
@@ -227,6 +235,7 @@ impl<const D: usize> State<'_, D> {
             transposed,
             doubtful,
             weak,
+            raised,
             far,
             turning,
             mirrored,

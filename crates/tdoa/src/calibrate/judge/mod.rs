@@ -8,5 +8,6 @@ pub(crate) mod lines_and_planes;
 pub(crate) mod mirror_images;
 pub(crate) mod neighbours;
 pub(crate) mod orientation;
+pub(crate) mod raised;
 pub(crate) mod upright;
 pub(crate) mod weak_nodes;

@@ -3,6 +3,7 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
+use crate::calibrate::judge::raised::{RAISED, may_be_raised};
 use crate::calibrate::model::calibrated::{Calibrated, CalibratedError};
 use crate::calibrate::model::errors_chosen::with_errors_chosen;
 use crate::calibrate::model::excluded::plane_is_excluded;
@@ -13,6 +14,8 @@ use crate::calibrate::options::CalibrateOptions;
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::steps::{Draft, calibrate_with};
 use crate::flatness::{FLAT, slenderness};
+use crate::network::Network;
+use crate::points::dot;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
@@ -128,7 +131,27 @@ fn choose(
         }
     }
     doubt(&mut flat, test);
+    if on_conics(&flat) {
+        flat.determined = false;
+        flat.call_not_unique(RAISED.into());
+    }
     Ok(Calibrated::Plane(flat))
+}
+
+/// Whether a planar network that was not said to be one, or another that fits as well, may have its transmitters raised.
+fn on_conics(flat: &Calibration) -> bool {
+    let variances: Vec<f64> = flat.receiver_std.iter().flatten().map(|std| dot(*std, *std)).collect();
+    let std = (variances.iter().sum::<f64>() / variances.len().max(1) as f64).sqrt();
+    let others = flat.alternatives.iter().map(|other| (&other.receivers, &other.transmitters));
+    others.chain([(&flat.receivers, &flat.transmitters)]).any(|(receivers, transmitters)| {
+        let located = transmitters.iter().flatten().copied();
+        let network = Network {
+            receivers: receivers.iter().flatten().copied().collect(),
+            offsets: vec![0.0; located.clone().count()],
+            transmitters: located.collect(),
+        };
+        may_be_raised(&network, std)
+    })
 }
 
 /// Says of a planar network what speaks for space.

@@ -5,6 +5,7 @@ use crate::calibrate::judge::far_transmitters::{Far, drawn_in};
 use crate::calibrate::judge::judgement::Judged;
 use crate::calibrate::judge::lines_and_planes::warn_of_sides;
 use crate::calibrate::judge::neighbours::Reason;
+use crate::calibrate::judge::raised::RAISED;
 use crate::calibrate::judge::weak_nodes::mostly_wrong;
 use crate::calibrate::search::deviation::typical_deviation;
 use crate::calibrate::search::one_sided::LEAST_REDUNDANCY;
@@ -42,6 +43,7 @@ impl<const D: usize> State<'_, D> {
         warn_of_sides(&self.measured, &drawn_in(best, far), uncertainty, turning, mirrored, &mut warnings);
         self.warn_of_far_transmitters(far, &mut warnings);
         warn_of_nodes(&self.measured, best, judged, &mut warnings);
+        warnings.extend(judged.raised.then(|| RAISED.to_string()));
         warnings.extend(judged.apart.iter().filter_map(|other| self.doubt(other)));
         let plain = judged.others.iter().filter(|other| other.reason == Reason::Found).count();
         if plain > 0 {
