@@ -6,13 +6,14 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use crate::calibrate::judge::neighbours::minima;
 use crate::calibrate::options::{CalibrateError, SearchOptions};
+use crate::calibrate::search::deviation::typical_deviation;
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::same_network::{distinct, same, same_but_for_sides};
 use crate::calibrate::search::shaken::{Round, least, part_of};
 use crate::calibrate::search::truncated_cost::truncated_cost;
-use crate::loss::{Loss, SEARCH_NU};
+use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::network::Network;
-use crate::observations::Observations;
+use crate::observations::{Observation, Observations};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, RefinedNetwork, extend, residuals};
 use std::ops::Range;
@@ -63,6 +64,12 @@ pub(crate) struct Search<'a, const D: usize> {
 /// Starts that must end in the best network before it is not shaken.
 const SETTLED: usize = 3;
 
+/// Deviations from which on a measurement is an outlier, share of the measurements that are many, and share of the
+/// network's size that is a large deviation.
+const OUTLIER: f64 = 3.0;
+const MANY: f64 = 0.15;
+const LARGE: f64 = 0.04;
+
 /// Number of the first call of a source in another's turn; far above the numbers of its own turns.
 const EXTRA_TURNS: usize = 1 << 24;
 
@@ -101,7 +108,8 @@ impl<const D: usize> Search<'_, D> {
             if last || starts >= options.min_starts && agreeing >= options.agreeing {
                 break;
             }
-            round.go_on(&mut ends, options.min_starts, self.shakes && agreeing < SETTLED && self.are_redundant());
+            let is_bent = self.shakes && agreeing < SETTLED && least(&ends).is_some_and(|best| self.is_bent(best));
+            round.go_on(&mut ends, options.min_starts, is_bent);
         }
         if ends.is_empty() {
             return Err(CalibrateError::NotFound(starts));
@@ -119,9 +127,15 @@ impl<const D: usize> Search<'_, D> {
         Ok(SearchOutcome { networks, near, starts })
     }
 
-    /// Whether there are more measurements than unknowns: other networks fit exactly else, and none is better.
-    fn are_redundant(&self) -> bool {
+    /// Whether measurements that are wrong seem to bend a network: many are outliers, or what it leaves is large. Else
+    /// starts end apart since the measurements hardly tell networks apart, and the one of least objective is no better.
+    fn is_bent(&self, found: &RefinedNetwork<D>) -> bool {
+        let deviation = self.deviation.unwrap_or(found.scale * normal_deviation(SEARCH_NU));
+        let is_outlier = |o: &&Observation| o.residual(&found.network).abs() > OUTLIER * deviation;
+        let outliers = self.observations.all().iter().filter(is_outlier).count();
+        let left = deviation * typical_deviation(self.measured) / found.network.size();
         self.observations.len() > self.observations.unknowns()
+            && (outliers as f64 > MANY * self.observations.len() as f64 || left > LARGE)
     }
 
     /// The ends of a batch of starts, from parts of a network if one is `shaken`; empty where stopped.
