@@ -120,6 +120,13 @@ def test_long_frames(tmp_path):
         tdoa.calibrate(milliseconds, speed=343)
     sure = tdoa.calibrate(long.assign(sigma=0.01))
     assert sure.data["sigma_is_factor"]
+    # Weights, whatever their unit, are deviations but for a factor.
+    weighed = tdoa.calibrate(long.assign(weight=7.0))
+    assert weighed.data["sigma_is_factor"] and weighed.data["sigma_estimated"]
+    table = tdoa.Pseudoranges(made.pseudoranges, weights=np.full(np.shape(made.pseudoranges), 3.0))
+    assert "at the median weight" in repr(tdoa.calibrate(table))
+    with pytest.raises(tdoa.InputError, match="say twice"):
+        tdoa.Pseudoranges([[1.0, 2.0]], weights=[[1.0, 1.0]], sigmas=[[1.0, 1.0]])
     for bad, words in [
         (long[["mic", "value"]], "no column is the transmitter"),
         (pandas.concat([long, long[:1]]), "twice|again|second"),
