@@ -1,55 +1,55 @@
 //! Tables of a sweep, as CSV.
 
 use super::swept::Swept;
-use std::fmt::Write;
 
 /// A line for each cell.
 pub(super) fn cells(swept: &Swept<'_>) -> String {
     let Swept { grid, sweep, .. } = swept;
-    let mut text = heading(swept, &["real", "positive", "complex", "at_infinity", "standing", "reason"]);
+    let mut table = Table::new(swept, &["real", "positive", "complex", "at_infinity", "standing", "reason"]);
     for (k, cell) in sweep.cells.iter().enumerate() {
-        values(&mut text, &grid.values(k));
-        let doubt = cell.standing.doubt().map(|doubt| field(&doubt.to_string())).unwrap_or_default();
-        let (real, positive, name) = (cell.real(), cell.positive(), cell.standing.name());
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "{real},{positive},{},{},{name},{doubt}", cell.complex, cell.at_infinity);
+        let counts = [cell.real(), cell.positive(), cell.complex, cell.at_infinity].map(|count| count.to_string());
+        let doubt = cell.standing.doubt().map(ToString::to_string).unwrap_or_default();
+        let standing = [cell.standing.name().to_owned(), doubt];
+        table.row(&grid.values(k), counts.into_iter().chain(standing));
     }
-    text
+    table.finish()
 }
 
 /// A line for each real solution of each cell; the branch of a multiple solution is empty.
 pub(super) fn branches(swept: &Swept<'_>) -> String {
     let Swept { family, grid, sweep, .. } = swept;
     let unknowns: Vec<&str> = family.system().variables().iter().map(String::as_str).collect();
-    let mut text = heading(swept, &[&["branch", "multiplicity"], &unknowns[..]].concat());
+    let mut table = Table::new(swept, &[&["branch", "multiplicity"], &unknowns[..]].concat());
     for (k, cell) in sweep.cells.iter().enumerate() {
         let at = grid.values(k);
         for solution in &cell.solutions {
-            values(&mut text, &at);
             let branch = solution.branch.map(|branch| branch.to_string()).unwrap_or_default();
-            let _ = write!(text, "{branch},{}", solution.multiplicity);
-            for x in &solution.value {
-                let _ = write!(text, ",{x}");
-            }
-            text.push('\n');
+            let numbers = [branch, solution.multiplicity.to_string()];
+            table.row(&at, numbers.into_iter().chain(solution.value.iter().map(f64::to_string)));
         }
     }
-    text
+    table.finish()
 }
 
-/// The names of the columns: those of the axes, and these.
-fn heading(swept: &Swept<'_>, more: &[&str]) -> String {
-    let axes = swept.grid.axes().iter().map(|axis| axis.parameter.as_str());
-    axes.chain(more.iter().copied()).map(field).collect::<Vec<_>>().join(",") + "\n"
-}
+/// A table whose first columns are the values on the axes.
+struct Table(csv::Writer<Vec<u8>>);
 
-fn values(text: &mut String, values: &[f64]) {
-    for value in values {
-        let _ = write!(text, "{value},");
+impl Table {
+    fn new(swept: &Swept<'_>, more: &[&str]) -> Table {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let axes = swept.grid.axes().iter().map(|axis| axis.parameter.as_str());
+        // Writing to memory does not fail, and all rows are of one length.
+        let _ = table.write_record(axes.chain(more.iter().copied()));
+        Table(table)
     }
-}
 
-/// A field, in quotes where it has a comma or a quote.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+    fn row(&mut self, at: &[f64], cells: impl Iterator<Item = String>) {
+        let _ = self.0.write_record(at.iter().map(f64::to_string).chain(cells));
+    }
+
+    fn finish(self) -> String {
+        let bytes = self.0.into_inner().unwrap_or_default();
+        // All that was written was text.
+        String::from_utf8(bytes).unwrap_or_default()
+    }
 }

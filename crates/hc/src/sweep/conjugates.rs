@@ -20,8 +20,8 @@ pub(super) fn reality(points: &[&[Complex64]]) -> Result<Vec<bool>, usize> {
     for (k, x) in points.iter().enumerate() {
         let reach = sweeps::NEAR * size(x).max(least);
         let first = order.partition_point(|&j| key(j) < key(k) - reach);
-        let mut near = order[first..].iter().take_while(|&&j| key(j) <= key(k) + reach);
-        let mut near = near.by_ref().filter(|&&j| is_near_conjugate(x, points[j], reach));
+        let near = order[first..].iter().take_while(|&&j| key(j) <= key(k) + reach);
+        let mut near = near.filter(|&&j| is_near_conjugate(x, points[j], reach));
         match (near.next(), near.next()) {
             (Some(&j), None) if j != k => {}
             (Some(_), None) if is_real(x, ends::REAL) => real[k] = true,

@@ -3,7 +3,8 @@
 //!
 //! Paths are believed where they make a bijection. Otherwise they are tracked in both directions, and believed where
 //! they come back. What is left over must be explained: two branches that meet, which is a fold, a branch that goes to
-//! infinity, or one that goes through a multiple point. Where it is not, as between two folds of which neither partner reaches a cell, the way is halved.
+//! infinity, or one that goes through a multiple point. Where it is not, as between two folds of which neither partner
+//! reaches a cell, the way is halved.
 
 use super::cell::{Cell, RealSolution};
 use super::grid::Grid;

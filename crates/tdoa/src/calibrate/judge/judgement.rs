@@ -14,6 +14,7 @@ use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays};
 use crate::calibrate::search::deviation::{inlier_deviation, typical_deviation};
 use crate::calibrate::search::one_sided::Information;
 use crate::calibrate::search::same_network::{same, same_receivers, same_transmitters};
+use crate::calibrate::search::starts::SETTLED;
 use crate::calibrate::state::State;
 use crate::minimal::NodeKind;
 use crate::network::Network;
@@ -22,10 +23,6 @@ use crate::points::trace;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Covariance, covariance};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-
-/// Starts that must end in the best network before it is called unique: one or two may have found
-/// it while a better one was missed.
-const SETTLED: usize = 3;
 
 /// Share of measurements that are outliers, above which a network of which the search is not sure does not fit. Of
 /// 10r/20s and 10r/30s in space with three tenths late and the deviation given, three networks that fitted and were 0.6 to

@@ -1,10 +1,12 @@
 //! Networks about a plane whose receivers lie on a conic q(x, y) = a and whose transmitters lie on a conic q(x, y) = b, as
 //! a ring of receivers and a circular flight around it do.
 //!
-//! While one conic grows and the other shrinks, transmitters may rise above the receivers so that all distances between
-//! the two stay: in the axes of q, coordinates of receivers are multiplied by some factors and those of transmitters
-//! divided by them, which leaves each product of theirs, and what the squares change by is the same for all (Ivory;
-//! Bolker and Roth 1980). The planar one of these networks fits without any heights, which says nothing of the true one.
+//! Transmitters may then rise above the receivers while all distances between the two stay. In the axes of q, let
+//! 1 + k A multiply the squares of the receivers' coordinates and divide those of the transmitters', where A has the
+//! coefficients of q. Products of coordinates stay, squares of distances change by k (a - b) + O(k^2), the same for all,
+//! and a height makes up for it. For circles about one centre this holds for all k, for other conics as long as k^2 is
+//! hidden by the noise (Bolker and Roth 1980 have the first order). The planar one of these networks fits without any
+//! heights, which says nothing of the true one.
 
 use crate::flatness::{FLAT, slenderness};
 use crate::network::Network;

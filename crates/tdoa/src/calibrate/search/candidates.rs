@@ -12,7 +12,7 @@ use crate::calibrate::search::dense::{RESOLUTION, complete, search_part, search_
 use crate::calibrate::search::deviation::{spread_of_residuals, typical_deviation};
 use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::same_network::same;
-use crate::calibrate::search::starts::Search;
+use crate::calibrate::search::starts::{SETTLED, Search};
 use crate::calibrate::state::State;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::network::Network;
@@ -26,9 +26,6 @@ const SEARCHES: usize = 3;
 
 /// Networks among all candidates from which a choice is made.
 const NETWORKS: usize = 12;
-
-/// Starts that must end in the best network among all candidates before its choice is not doubted.
-const SETTLED: usize = 3;
 
 /// Scale of the loss among all candidates, as a share of the network's diameter: far below what candidates of a cell
 /// differ by. It cannot be estimated, as half of the candidates or more are wrong.

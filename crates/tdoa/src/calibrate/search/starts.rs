@@ -61,8 +61,9 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(crate) shakes: bool,
 }
 
-/// Starts that must end in the best network before it is not shaken.
-const SETTLED: usize = 3;
+/// Starts that must end in the best network before it counts as found: one or two may have ended there while a better one
+/// was missed.
+pub(crate) const SETTLED: usize = 3;
 
 /// Deviations from which on a measurement is an outlier, share of the measurements that are many, and share of the
 /// network's size that is a large deviation.
