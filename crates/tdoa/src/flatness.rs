@@ -88,9 +88,21 @@ pub(crate) fn levelled<const D: usize>(network: &Network<D>) -> Option<Transform
     let planes = [&all, &receivers, &transmitters].into_iter().filter(tells).filter_map(|points| axes(points));
     let misfit = |axes: &[[f64; D]; D]| of_heights(&receivers, axes[0]) + of_heights(&transmitters, axes[0]);
     let best = planes.map(|(_, axes)| axes).min_by(|a, b| misfit(a).total_cmp(&misfit(b)))?;
-    let centre = centroid(network.receivers.iter());
-    // The shortest axis comes first.
-    frame(centre, from_fn(|k| from_fn(|a| centre[a] + best[D - 1 - k][a])))
+    upright(centroid(network.receivers.iter()), best)
+}
+
+/// The rigid motion after which points lie about z = 0; `None` where they lie nearly in one line, and in the plane.
+pub(crate) fn level_plane<const D: usize>(points: &[[f64; D]]) -> Option<Transform<D>> {
+    if D != 3 || points.len() < 3 || slenderness(points) < FLAT {
+        return None;
+    }
+    let (centre, axes) = axes(points)?;
+    upright(centre, axes)
+}
+
+/// The motion that puts the centre at zero and the axes, the shortest first, on z, y and x.
+fn upright<const D: usize>(centre: [f64; D], axes: [[f64; D]; D]) -> Option<Transform<D>> {
+    frame(centre, from_fn(|k| from_fn(|a| centre[a] + axes[D - 1 - k][a])))
 }
 
 /// Standard deviation of points along the axis on which they stretch second farthest, and that axis. `None`

@@ -3,6 +3,7 @@
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
+use std::ops::Range;
 
 /// One measured cell.
 #[derive(Debug, Clone, Copy)]
@@ -82,6 +83,15 @@ impl Pin {
     }
 }
 
+/// A length by which the values of some pins change together, and which is not known well.
+#[derive(Debug, Clone)]
+pub(crate) struct Level {
+    /// Per pin, how much of that length it changes by.
+    pub(crate) shares: Vec<f64>,
+    /// What is known of the length beside the measurements: their deviation over that of the length.
+    pub(crate) precision: f64,
+}
+
 /// All measured cells, transmitter by transmitter, and the same cells receiver by receiver: of nodes
 /// in the plane, or in space with `D` = 3.
 #[derive(Debug, Clone)]
@@ -94,6 +104,7 @@ pub(crate) struct Observations<const D: usize = 2> {
     row_entries: Vec<usize>,
     held: Vec<bool>,
     pins: Vec<Pin>,
+    levels: Vec<Level>,
     other_unknowns: usize,
     /// Whether they are distances: no transmitter has an offset.
     are_ranges: bool,
@@ -146,6 +157,7 @@ impl<const D: usize> Observations<D> {
             row_entries,
             held: vec![false; m],
             pins: Vec::new(),
+            levels: Vec::new(),
             other_unknowns: 0,
             are_ranges: false,
         }
@@ -189,7 +201,7 @@ impl<const D: usize> Observations<D> {
 
     /// Measurements of the same kind with the same pins.
     fn like(&self, others: Self) -> Self {
-        let others = others.pinned(&self.pins).with_other_unknowns(self.other_unknowns);
+        let others = others.pinned_like(self).with_other_unknowns(self.other_unknowns);
         Observations { are_ranges: self.are_ranges, ..others }
     }
 
@@ -209,7 +221,22 @@ impl<const D: usize> Observations<D> {
 
     /// These measurements, and coordinates of nodes.
     pub(crate) fn pinned(self, pins: &[Pin]) -> Self {
-        Observations { pins: pins.to_vec(), ..self }
+        Observations { pins: pins.to_vec(), levels: Vec::new(), ..self }
+    }
+
+    /// These measurements, whose pins have values that are not known well.
+    pub(crate) fn levelled(self, levels: Vec<Level>) -> Self {
+        Observations { levels, ..self }
+    }
+
+    /// These measurements with the pins of others, which are of the same nodes.
+    pub(crate) fn pinned_like(self, others: &Self) -> Self {
+        Observations { pins: others.pins.clone(), levels: others.levels.clone(), ..self }
+    }
+
+    /// What is not known well of the values of pins. It counts in covariances alone.
+    pub(crate) fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
     /// Coordinates of nodes that were measured by themselves.
@@ -266,7 +293,12 @@ impl<const D: usize> Observations<D> {
 
     /// Those of one transmitter, by receiver.
     pub(crate) fn of_transmitter(&self, j: usize) -> &[Observation] {
-        &self.entries[self.columns[j]..self.columns[j + 1]]
+        &self.entries[self.places(j)]
+    }
+
+    /// The places of the cells of a transmitter among all.
+    pub(crate) fn places(&self, j: usize) -> Range<usize> {
+        self.columns[j]..self.columns[j + 1]
     }
 
     /// Those of one receiver, by transmitter.

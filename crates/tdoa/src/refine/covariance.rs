@@ -12,7 +12,9 @@ use faer::Mat;
 use faer::Side;
 
 use super::cancel::{Cancelled, apart, check};
+use super::levels::add_levels;
 use super::normal::Normal;
+use super::projection::Motion;
 use super::refiner::NetworkRefiner;
 use super::rigid::rigid_motion;
 use crate::bordered::{Bordered, Placed};
@@ -48,6 +50,22 @@ pub(crate) struct Covariance<const D: usize = 2> {
 }
 
 impl<const D: usize> Covariance<D> {
+    /// Adds `factor` times the product of two motions.
+    pub(crate) fn add_product(&mut self, factor: f64, p: &Motion<D>, q: &Motion<D>) {
+        let size = p.receivers.len();
+        for (row, x) in self.joint.chunks_exact_mut(size).zip(&p.receivers) {
+            row.iter_mut().zip(&q.receivers).for_each(|(sum, y)| *sum += factor * x * y);
+        }
+        for (i, rows) in self.receivers.iter_mut().enumerate() {
+            *rows = from_fn(|a| from_fn(|b| self.joint[(D * i + a) * size + D * i + b]));
+        }
+        for (own, (s, t)) in self.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
+            if let Some(own) = own {
+                own.add_product(factor, s, t);
+            }
+        }
+    }
+
     /// Largest standard deviation of a receiver's place, metres.
     pub(crate) fn loosest(&self) -> f64 {
         if self.loose.is_empty() { self.receivers.iter().map(trace).fold(0.0, f64::max).sqrt() } else { f64::INFINITY }
@@ -170,21 +188,16 @@ pub(crate) fn covariance<const D: usize>(
     let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
     let zero = *zero;
     let receivers = (0..m).map(|i| from_fn(|a| from_fn(|b| inverse[(D * i + a, D * i + b)]))).collect();
-    let mut first = 0;
     let mut transmitters = Vec::with_capacity(observations.transmitters);
     for j in 0..observations.transmitters {
         check(monitor)?;
-        let column = observations.of_transmitter(j);
-        let rays = &normal.rays()[first..first + column.len()];
-        first += column.len();
         transmitters.push(normal.inverse_factor(j).map(|factor| {
             // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with
             // K_i = C^-1 g w u^T.
-            let gains: Vec<(Placed<D>, [f64; D], usize)> = column
-                .iter()
-                .zip(rays)
-                .map(|(o, (u, w))| (factor.invert((u.map(|u| w * u), observations.of_offset(*w))), *u, D * o.receiver))
-                .collect();
+            let gains = normal.gains(observations, j);
+            let rays = normal.rays()[observations.places(j)].iter().zip(observations.of_transmitter(j));
+            let gains: Vec<(Placed<D>, [f64; D], usize)> =
+                gains.into_iter().zip(rays).map(|(gain, ((u, _), o))| (gain, *u, D * o.receiver)).collect();
             let mut sum = Bordered::ZERO;
             for (a, u, i) in &gains {
                 for (b, v, k) in &gains {
@@ -203,7 +216,9 @@ pub(crate) fn covariance<const D: usize>(
     } else {
         loose_beside_held::<D>(&modes.as_ref(), zero, free)
     };
-    Ok(Some(Covariance { receivers, joint, transmitters, loose }))
+    let mut found = Covariance { receivers, joint, transmitters, loose };
+    add_levels(&mut found, observations, &reduced, sigma);
+    Ok(Some(found))
 }
 
 /// The covariance of a transmitter between receivers that are known, from the inverse of the Cholesky factor of its own

@@ -3,6 +3,7 @@
 //! In a nearly flat network the height z of a node changes distances by its square, z^2 / 2d, so that small heights
 //! are lost in the noise, and least squares in space makes heights of noise. Here heights are normal, those of
 //! receivers about the plane z = 0 and those of transmitters about one beside it, each with a standard deviation tau.
+//! Receivers may be about two levels instead, as anchors near the floor and near the ceiling are.
 //! The maximum of the marginal likelihood is found by expectation maximisation in Laplace's approximation: tau^2 is the
 //! mean of (z - plane)^2 and the variance of z at the most likely network (Dempster, Laird and Rubin 1977; MacKay
 //! 1992), which in its turn is least squares with the pins z = plane +- tau.
@@ -16,10 +17,10 @@ use super::gross_errors::GrossErrors;
 use super::refiner::{NetworkRefiner, RefineOptions, SEARCH};
 use crate::loss::SEARCH_NU;
 use crate::network::Network;
-use crate::observations::{Node, Observation, Observations, Pin};
+use crate::observations::{Level, Node, Observation, Observations, Pin};
 use crate::points::spread;
 use hc::Monitor;
-use std::f64::consts::TAU;
+use std::f64::consts::{LN_2, TAU};
 
 /// Most rounds of fitting network and heights in turn.
 const ROUNDS: usize = 60;
@@ -48,8 +49,12 @@ const SORTINGS: usize = 12;
 /// Standard deviations of the heights of nodes above their plane, and the network that has them.
 #[derive(Debug, Clone)]
 pub(crate) struct Heights<const D: usize> {
-    /// Of receivers about z = 0, metres.
+    /// Of receivers about their levels, metres.
     pub(crate) receivers: f64,
+    /// On which of two levels each receiver is, 1 or -1; 0 for all where there is one level, z = 0.
+    pub(crate) sides: Vec<f64>,
+    /// Half of the distance of the two levels, which are as far above z = 0 as below, metres.
+    pub(crate) apart: f64,
     /// Of transmitters about their plane, metres.
     pub(crate) transmitters: f64,
     /// Height of the plane of the transmitters, metres.
@@ -65,12 +70,13 @@ pub(crate) struct Heights<const D: usize> {
 }
 
 impl<const D: usize> Heights<D> {
-    /// Deviations of heights and the most likely network near one whose receivers are about z = 0, from the
-    /// measurements without gross errors. `known` is the deviation of the measurements if it is given, `first` one near
-    /// it. `None` if the equations are singular.
+    /// Deviations of heights and the most likely network near one with level planes, from the measurements without gross
+    /// errors. Receivers are on the levels that `sides` say. `known` is the deviation of the measurements if it is given,
+    /// `first` one near it. `None` if the equations are singular.
     pub(crate) fn of(
         observations: &Observations<D>,
         network: &Network<D>,
+        sides: Vec<f64>,
         known: Option<f64>,
         first: f64,
         monitor: &Monitor,
@@ -78,7 +84,9 @@ impl<const D: usize> Heights<D> {
         let least = LEAST * network.size();
         let (m, n) = (observations.receivers as f64, observations.transmitters as f64);
         let mut now = Heights {
-            receivers: mean_square(&network.receivers, 0.0).sqrt().max(least),
+            receivers: 0.0,
+            sides,
+            apart: 0.0,
             transmitters: mean_square(&network.transmitters, mean(&network.transmitters)).sqrt().max(least),
             between: mean(&network.transmitters),
             told: m + n,
@@ -86,11 +94,12 @@ impl<const D: usize> Heights<D> {
             deviation: known.unwrap_or(first),
             network: network.clone(),
         };
+        now.centre();
+        now.receivers = now.off_levels().sqrt().max(least);
         for _ in 0..ROUNDS {
             let pinned = observations.clone().pinned(&now.pins());
-            let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
-            now.network = NetworkRefiner::new(&pinned, f64::INFINITY, monitor).refine(now.network, &fit).network;
-            check(monitor)?;
+            now.network = fitted(&pinned, now.network, monitor)?;
+            now.centre();
             let Some(uncertainty) = covariance(&pinned, &now.network, now.deviation, monitor)? else { return Ok(None) };
             let z = D - 1;
             let of_receivers: f64 = uncertainty.receivers.iter().map(|c| c[z][z]).sum();
@@ -99,14 +108,10 @@ impl<const D: usize> Heights<D> {
             let of_transmitters: f64 = (0..observations.transmitters).map(placed).sum();
             let told = [(m, of_receivers, now.receivers), (n, of_transmitters, now.transmitters)]
                 .map(|(count, variances, tau)| (count - variances / tau.powi(2)).max(0.0));
-            let next = |points: &[[f64; D]], middle: f64, variances: f64| {
-                (mean_square(points, middle) + variances / points.len() as f64).sqrt().max(least)
-            };
+            let next = |square: f64, variances: f64, count: f64| (square + variances / count).sqrt().max(least);
             now.between = mean(&now.network.transmitters);
-            let next = [
-                next(&now.network.receivers, 0.0, of_receivers),
-                next(&now.network.transmitters, now.between, of_transmitters),
-            ];
+            let off = mean_square(&now.network.transmitters, now.between);
+            let next = [next(now.off_levels(), of_receivers, m), next(off, of_transmitters, n)];
             let change = (next[0] / now.receivers).ln().abs().max((next[1] / now.transmitters).ln().abs());
             [now.receivers, now.transmitters] = next;
             now.told = told[0] + told[1];
@@ -123,6 +128,51 @@ impl<const D: usize> Heights<D> {
         Ok(Some(now))
     }
 
+    /// The most likely network near one with these heights, and the sum of the squares of its residuals, heights
+    /// included, in the unit of the measurements.
+    pub(crate) fn fitted(
+        &self,
+        observations: &Observations<D>,
+        network: Network<D>,
+        monitor: &Monitor,
+    ) -> Result<(f64, Network<D>), Cancelled> {
+        let pinned = observations.clone().pinned(&self.pins());
+        let network = fitted(&pinned, network, monitor)?;
+        Ok((squares(&pinned, &network), network))
+    }
+
+    /// These with the plane of the transmitters as z = 0, from which receivers are as far on either side.
+    pub(crate) fn about_transmitters(&self) -> Heights<D> {
+        let sides = vec![0.0; self.sides.len()];
+        let mut moved = Heights { between: 0.0, sides, apart: 0.0, ..self.clone() };
+        moved.lift(-self.between);
+        moved.receivers = moved.off_levels().sqrt().max(self.receivers);
+        moved
+    }
+
+    /// Adds to the heights of all nodes.
+    fn lift(&mut self, height: f64) {
+        self.network.receivers.iter_mut().chain(&mut self.network.transmitters).for_each(|p| p[D - 1] += height);
+    }
+
+    /// The likeliest levels for these heights of receivers, and the likeliest heights of all nodes together.
+    fn centre(&mut self) {
+        let count = self.sides.len().max(1) as f64;
+        let (height, side) = (mean(&self.network.receivers), self.sides.iter().sum::<f64>() / count);
+        let heights = self.network.receivers.iter().map(|p| p[D - 1]);
+        let covariance: f64 = self.sides.iter().zip(heights).map(|(s, z)| (s - side) * z).sum();
+        let variance: f64 = self.sides.iter().map(|s| (s - side).powi(2)).sum();
+        self.apart = if variance > 0.0 { covariance / variance } else { 0.0 };
+        self.lift(self.apart * side - height);
+    }
+
+    /// Mean square of the receivers' heights above their levels.
+    fn off_levels(&self) -> f64 {
+        let receivers = &self.network.receivers;
+        let squares = receivers.iter().zip(&self.sides).map(|(p, side)| (p[D - 1] - side * self.apart).powi(2));
+        squares.sum::<f64>() / receivers.len().max(1) as f64
+    }
+
     /// The most likely planar network near this one, where measurements of about this deviation are good.
     pub(crate) fn flat(
         &self,
@@ -131,7 +181,8 @@ impl<const D: usize> Heights<D> {
         monitor: &Monitor,
     ) -> Result<Heights<D>, Cancelled> {
         let none = NONE * self.network.size();
-        let mut flat = Heights { receivers: none, transmitters: none, between: 0.0, deviation, ..self.clone() };
+        let mut flat =
+            Heights { receivers: none, transmitters: none, between: 0.0, apart: 0.0, deviation, ..self.clone() };
         let points = flat.network.receivers.iter_mut().chain(&mut flat.network.transmitters);
         points.for_each(|p| p[D - 1] = 0.0);
         let pinned = observations.clone().pinned(&flat.pins());
@@ -152,7 +203,6 @@ impl<const D: usize> Heights<D> {
         monitor: &Monitor,
     ) -> Result<Option<f64>, Cancelled> {
         let unknowns = 2 * self.network.receivers.len() + 3 * self.network.transmitters.len() - 3;
-        let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
         let mut errors = GrossErrors::new(observations.len(), width);
         let mut now = self.clone();
         let (mut before, mut rounds) = (0, 0);
@@ -163,11 +213,8 @@ impl<const D: usize> Heights<D> {
             if left == 0 {
                 return Ok(None);
             }
-            let mut refiner = NetworkRefiner::new(&kept, f64::INFINITY, monitor);
-            now.network = refiner.refine(now.network, &fit).network;
-            check(monitor)?;
-            let cells = kept.all().iter().map(|o| o.residual(&now.network).powi(2));
-            let squares: f64 = cells.chain(kept.pins().iter().map(|pin| pin.residual(&now.network).powi(2))).sum();
+            now.network = fitted(&kept, now.network, monitor)?;
+            let squares = squares(&kept, &now.network);
             let deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
             errors.count(kept.len());
             let settled = kept.len() == before && (deviation / now.deviation).ln().abs() < STILL;
@@ -217,20 +264,39 @@ impl<const D: usize> Heights<D> {
     /// What not knowing the deviations and the place of the transmitters' plane beforehand costs in the logarithm of the
     /// marginal likelihood: each deviation is anywhere from a thousandth of `width` to it, on a logarithmic scale, and
     /// the plane within it on either side; k heights tell the logarithm of their deviation to 1 / sqrt(2k), and their
-    /// mean to the deviation over sqrt(k).
+    /// mean to the deviation over sqrt(k). Of two levels, each receiver is on either, and their distance is as the place
+    /// of the plane.
     pub(crate) fn log_prior(&self, width: f64) -> f64 {
         let (m, n) = (self.network.receivers.len() as f64, self.network.transmitters.len() as f64);
         let of_deviation = |count: f64| (0.5 * (TAU / (2.0 * count)).ln() - RANGE.ln().ln()).min(0.0);
-        let of_place = 0.5 * (TAU / n).ln() + (self.transmitters / (2.0 * width)).ln();
-        of_deviation(m) + of_deviation(n) + of_place.min(0.0)
+        let of_place = |count: f64, tau: f64| (0.5 * (TAU / count).ln() + (tau / (2.0 * width)).ln()).min(0.0);
+        let of_levels = if self.apart == 0.0 { 0.0 } else { of_place(m, self.receivers) - (m - 1.0) * LN_2 };
+        of_deviation(m) + of_deviation(n) + of_place(n, self.transmitters) + of_levels
     }
 
     /// The heights as measurements of the plane's place.
     pub(crate) fn pins(&self) -> Vec<Pin> {
         let pin = |node: Node, value: f64, tau: f64| Pin { node, axis: D - 1, value, precision: self.deviation / tau };
-        let receivers = (0..self.network.receivers.len()).map(|i| pin(Node::Receiver(i), 0.0, self.receivers));
+        let levels = self.sides.iter().map(|side| side * self.apart).enumerate();
+        let receivers = levels.map(|(i, level)| pin(Node::Receiver(i), level, self.receivers));
         let transmitters = 0..self.network.transmitters.len();
         receivers.chain(transmitters.map(|j| pin(Node::Transmitter(j), self.between, self.transmitters))).collect()
+    }
+
+    /// The levels of [`Heights::pins`], none of which is known better than its own size.
+    pub(crate) fn levels(&self) -> Vec<Level> {
+        let (receivers, transmitters) = (self.network.receivers.len(), self.network.transmitters.len());
+        let of_plane = vec![0.0; receivers].into_iter().chain(vec![1.0; transmitters]).collect();
+        let of_sides = self.sides.iter().copied().chain(vec![0.0; transmitters]).collect();
+        let level = |shares, size| Level { shares, precision: self.deviation / size };
+        let plane = level(of_plane, self.between.hypot(self.transmitters));
+        let apart = (self.apart != 0.0).then(|| level(of_sides, self.apart.abs()));
+        [plane].into_iter().chain(apart).collect()
+    }
+
+    /// Root mean square distance of the receivers from z = 0, metres.
+    pub(crate) fn distance_from_plane(&self) -> f64 {
+        self.receivers.hypot(self.apart)
     }
 
     /// The deviation of the heights of receivers or transmitters, whichever are flatter, as a share of the receivers'
@@ -253,7 +319,7 @@ impl<const D: usize> Heights<D> {
     /// By how much the heights change a measured distance, root mean square over all measurements: in metres, and in
     /// deviations of the measurements.
     pub(crate) fn change(&self, observations: &Observations<D>) -> [f64; 2] {
-        let square = self.receivers.powi(2) + self.transmitters.powi(2) + self.between.powi(2);
+        let square = self.distance_from_plane().powi(2) + self.transmitters.powi(2) + self.between.powi(2);
         let change = |i: usize, j: usize| 0.5 * square / self.network.distance(i, j).max(square.sqrt());
         let mut squares = [0.0; 2];
         for o in observations.all() {
@@ -263,6 +329,24 @@ impl<const D: usize> Heights<D> {
         }
         squares.map(|sum| (sum / observations.len().max(1) as f64).sqrt())
     }
+}
+
+/// The network of least squares near one.
+fn fitted<const D: usize>(
+    pinned: &Observations<D>,
+    network: Network<D>,
+    monitor: &Monitor,
+) -> Result<Network<D>, Cancelled> {
+    let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
+    let network = NetworkRefiner::new(pinned, f64::INFINITY, monitor).refine(network, &fit).network;
+    check(monitor)?;
+    Ok(network)
+}
+
+/// Sum of the squares of the residuals, of pins too.
+fn squares<const D: usize>(pinned: &Observations<D>, network: &Network<D>) -> f64 {
+    let cells = pinned.all().iter().map(|o| o.residual(network).powi(2));
+    cells.chain(pinned.pins().iter().map(|pin| pin.residual(network).powi(2))).sum()
 }
 
 /// Mean of the last coordinate.
@@ -305,7 +389,7 @@ mod tests {
         let mut start = network.clone();
         // Heights of 30 cm at least, from which smaller ones are found.
         start.receivers.iter_mut().chain(&mut start.transmitters).for_each(|p| p[2] += 0.3 * p[2].signum());
-        let heights = Heights::of(&observations, &start, known, SIGMA, &monitor).unwrap().unwrap();
+        let heights = Heights::of(&observations, &start, vec![0.0; 12], known, SIGMA, &monitor).unwrap().unwrap();
         let flat = heights.flat(&observations, heights.deviation, &monitor).unwrap();
         let evidence = |heights: &Heights<3>| heights.evidence(&observations, known, 10.0, &monitor).unwrap().unwrap();
         let gain = evidence(&heights) + heights.log_prior(10.0) - evidence(&flat);
@@ -323,6 +407,38 @@ mod tests {
                 assert!(gain > 10.0, "seed {seed}: {gain}");
                 assert!((heights.deviation / SIGMA).ln().abs() < 0.3, "seed {seed}: {}", heights.deviation);
             }
+        }
+    }
+
+    /// Anchors 1 m above and below the middle, 5 cm off these levels, transmitters between them.
+    #[test]
+    fn two_levels_are_likelier_than_one_and_found() {
+        for seed in 0..4 {
+            let mut rng = Pcg64Mcg::seed_from_u64(seed);
+            let mut points = |count: usize, height: fn(usize) -> f64, off: f64| -> Vec<[f64; 3]> {
+                let point = |(k, rng): (usize, &mut Pcg64Mcg)| {
+                    let z: f64 = rng.sample(StandardNormal);
+                    [10.0 * rng.random::<f64>(), 8.0 * rng.random::<f64>(), height(k) + off * z]
+                };
+                (0..count).map(|k| point((k, &mut rng))).collect()
+            };
+            let side = |k: usize| if k.is_multiple_of(3) { 1.0 } else { -1.0 };
+            let (receivers, transmitters) = (points(12, side, 0.05), points(30, |_| 0.2, 0.3));
+            let network = Network { receivers, transmitters, offsets: vec![0.0; 30] };
+            let noisy = network.pseudoranges().into_iter().map(|f| f + SIGMA * rng.sample::<f64, _>(StandardNormal));
+            let measured = Pseudoranges::new(12, 30, noisy.collect()).unwrap();
+            let observations = Observations::<3>::new(&measured, |_, _| true);
+            let monitor = Monitor::default();
+            let of = |sides: Vec<f64>| {
+                let found = Heights::of(&observations, &network, sides, None, SIGMA, &monitor).unwrap().unwrap();
+                let evidence = found.evidence(&observations, None, 10.0, &monitor).unwrap().unwrap();
+                (evidence + found.log_prior(10.0), found)
+            };
+            let (one, two) = (of(vec![0.0; 12]), of((0..12).map(side).collect()));
+            // One level has deviation 1 in place of 0.05, over twelve heights, for twelve sides and a distance.
+            assert!(two.0 > one.0 + 5.0, "seed {seed}: {} {}", two.0, one.0);
+            assert!(one.1.apart == 0.0 && (two.1.apart - 1.0).abs() < 0.1, "seed {seed}: {}", two.1.apart);
+            assert!(two.1.receivers < 0.2 && (one.1.receivers / 0.94).ln().abs() < 0.3, "seed {seed}: {:?}", one.1);
         }
     }
 

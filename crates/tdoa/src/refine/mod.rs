@@ -16,6 +16,7 @@ mod eliminate;
 mod extend;
 mod gross_errors;
 mod heights;
+mod levels;
 mod normal;
 mod predicted;
 mod projection;

@@ -363,6 +363,14 @@ impl<const D: usize> Normal<D> {
         self.inverse_factors[j].as_ref()
     }
 
+    /// How a transmitter and its offset follow a way of a receiver along each of its rays, of the last `reduce`; none
+    /// where its block is singular.
+    pub(crate) fn gains(&self, observations: &Observations<D>, j: usize) -> Vec<Placed<D>> {
+        let Some(factor) = self.inverse_factor(j) else { return Vec::new() };
+        let rays = &self.rays[observations.places(j)];
+        rays.iter().map(|(u, w)| factor.invert((u.map(|u| w * u), observations.of_offset(*w)))).collect()
+    }
+
     /// Unit vectors and weights of the last `linearise`, in the order of the observations.
     pub(crate) fn rays(&self) -> &[([f64; D], f64)] {
         &self.rays

@@ -24,15 +24,14 @@ pub(crate) fn predicted_variances<const D: usize>(
     for j in 0..observations.transmitters {
         check(monitor)?;
         let column = observations.of_transmitter(j);
-        let rays = &normal.rays()[all.len()..all.len() + column.len()];
+        let rays = &normal.rays()[observations.places(j)];
         let Some(factor) = normal.inverse_factor(j) else {
             all.extend(std::iter::repeat_n(None, column.len()));
             continue;
         };
         let g = |k: usize| (rays[k].0, observations.of_offset(1.0));
         // A motion of the receivers by dr moves the transmitter by sum_l a_l u_l^T dr_l.
-        let gains: Vec<Placed<D>> =
-            rays.iter().map(|(u, w)| factor.invert((u.map(|x| w * x), observations.of_offset(*w)))).collect();
+        let gains = normal.gains(observations, j);
         let between = |k: usize, l: usize| -> f64 {
             let (a, b) = (D * column[k].receiver, D * column[l].receiver);
             let entry = |x: usize, y: usize| rays[k].0[x] * joint[(a + x) * size + b + y] * rays[l].0[y];

@@ -27,6 +27,9 @@ pub struct PlaneDistances {
     pub receivers: f64,
     /// Root mean square of the transmitters' distances from the plane of the receivers, metres.
     pub transmitters: f64,
+    /// How far two levels lie apart on which the receivers are expected, metres; `None` where they are on one.
+    #[serde(default)]
+    pub levels: Option<f64>,
     /// By how much such distances from the plane change the distances between receivers and transmitters, root mean
     /// square, metres.
     pub change: f64,

@@ -31,7 +31,7 @@ const MOST_OUTLIERS: f64 = 0.3;
 
 /// Receivers of another network that are farther from those of the best one than this share of its size, root mean square,
 /// are elsewhere.
-const ELSEWHERE: f64 = 0.1;
+pub(crate) const ELSEWHERE: f64 = 0.1;
 
 /// What has been decided about the best network of a state.
 pub(crate) struct Judged<'s, const D: usize> {
@@ -134,7 +134,7 @@ impl<const D: usize> State<'_, D> {
         let sigma = self.known.unwrap_or(estimated);
         let kept = Observations::new(measured, |i, j| self.is_inlier(measured, best, sigma, i, j))
             .holding(observations.held())
-            .pinned(observations.pins())
+            .pinned_like(observations)
             .with_other_unknowns(observations.other_unknowns());
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95::<D>(redundancy, self.known.is_some());
@@ -194,7 +194,11 @@ impl<const D: usize> State<'_, D> {
             };
             others.iter().filter(is_elsewhere).count() > agreeing
         };
-        let open = ellipse_radius.is_some() && weak.are_most() || !turning.is_empty() || scattered || raised;
+        let open = ellipse_radius.is_some() && weak.are_most()
+            || !turning.is_empty()
+            || scattered
+            || raised
+            || self.other_heights.is_some();
         let determined = !open && !transposed && 2 * doubtful.len() < best.receivers.len();
         let receivers_agree = apart.is_empty() && others.iter().all(|other| same_receivers(&other.network, best));
         let transmitters_agree = apart.is_empty() && others.iter().all(|other| same_transmitters(&other.network, best));

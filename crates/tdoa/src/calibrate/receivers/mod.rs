@@ -4,6 +4,7 @@ pub(crate) mod all_delays;
 pub(crate) mod echo;
 pub(crate) mod errors;
 pub(crate) mod evidence;
+pub(crate) mod height_modes;
 pub(crate) mod known_positions;
 pub(crate) mod level;
 pub(crate) mod moves;

@@ -331,8 +331,8 @@ impl<const D: usize> Calibration<D> {
         }
         self.receiver_echoes.iter_mut().for_each(|echo| echo.wall *= factor);
         self.chosen.iter_mut().for_each(|chosen| chosen.value *= factor);
-        if let Some(PlaneDistances { receivers, transmitters, change }) = &mut self.plane_distances {
-            [receivers, transmitters, change].into_iter().for_each(|length| *length *= factor);
+        if let Some(PlaneDistances { receivers, transmitters, levels, change }) = &mut self.plane_distances {
+            [receivers, transmitters, change].into_iter().chain(levels).for_each(|length| *length *= factor);
         }
         if let Some(systematic) = &mut self.systematic {
             systematic.rescale(factor);

@@ -12,22 +12,6 @@ use crate::quantity::length;
 use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance, gram, sampled_covariance};
 use faer::Mat;
 use faer::prelude::Solve;
-use std::array::from_fn;
-
-/// Adds the product of two motions to a covariance, but for the single receivers.
-fn add<const D: usize>(covariance: &mut Covariance<D>, factor: f64, p: &Motion<D>, q: &Motion<D>) {
-    let size = p.receivers.len();
-    for x in 0..size {
-        for y in 0..size {
-            covariance.joint[x * size + y] += factor * p.receivers[x] * q.receivers[y];
-        }
-    }
-    for (covariance, (s, t)) in covariance.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
-        if let Some(covariance) = covariance {
-            covariance.add_product(factor, s, t);
-        }
-    }
-}
 
 /// What a receiver has, in words after "has".
 fn what_is_wrong(error: &ReceiverError, metre: f64) -> String {
@@ -65,7 +49,7 @@ impl<const D: usize> State<'_, D> {
         let pairs = (0..taken.len()).flat_map(|a| (0..taken.len()).map(move |b| (a, b)));
         for (a, b) in pairs {
             check(monitor)?;
-            add(&mut found, sigma * sigma * inverse[(a, b)], &taken[a].1, &taken[b].1);
+            found.add_product(sigma * sigma * inverse[(a, b)], &taken[a].1, &taken[b].1);
         }
         for fault in &self.left {
             if fault.kind == ReceiverErrorKind::Move {
@@ -75,16 +59,12 @@ impl<const D: usize> State<'_, D> {
                     transmitters: vec![([0.0; D], 0.0); kept.transmitters],
                 };
                 motion.receivers[D * fault.receiver..D * (fault.receiver + 1)].copy_from_slice(&fault.size);
-                add(&mut found, 1.0, &motion, &motion);
+                found.add_product(1.0, &motion, &motion);
             } else {
                 for (_, motion) in columns(kept, &projection, &[*fault], monitor)? {
-                    add(&mut found, fault.size[0].powi(2), &motion, &motion);
+                    found.add_product(fault.size[0].powi(2), &motion, &motion);
                 }
             }
-        }
-        let size = D * kept.receivers;
-        for (i, receiver) in found.receivers.iter_mut().enumerate() {
-            *receiver = from_fn(|x| from_fn(|y| found.joint[(D * i + x) * size + D * i + y]));
         }
         Ok(found)
     }

@@ -44,6 +44,20 @@ impl<const D: usize> State<'_, D> {
         self.warn_of_far_transmitters(far, &mut warnings);
         warn_of_nodes(&self.measured, best, judged, &mut warnings);
         warnings.extend(judged.raised.then(|| RAISED.to_string()));
+        warnings.extend(self.plane_distances.and_then(|distances| distances.levels).map(|apart| {
+            format!(
+                "receivers are taken to be at two heights, {} apart, since that makes the measurements likelier; give heights that are known \
+                 (--anchors with z alone)",
+                length(self.metre() * apart)
+            )
+        }));
+        warnings.extend(self.other_heights.map(|apart| {
+            format!(
+                "other heights are about as likely, with receivers that lie {} elsewhere (see alternatives): say how high some receivers are \
+                 (--anchors with z alone will do), move some nodes farther from the plane of the others, or measure more",
+                length(self.metre() * apart)
+            )
+        }));
         warnings.extend(judged.apart.iter().filter_map(|other| self.doubt(other)));
         let plain = judged.others.iter().filter(|other| other.reason == Reason::Found).count();
         if plain > 0 {
