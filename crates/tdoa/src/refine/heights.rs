@@ -8,6 +8,8 @@
 //! mean of (z - plane)^2 and the variance of z at the most likely network (Dempster, Laird and Rubin 1977; MacKay
 //! 1992), which in its turn is least squares with the pins z = plane +- tau.
 //!
+//! Every other round goes as much farther as two rounds before have it.
+//!
 //! The iteration comes from large heights. Where a plane explains the measurements it ends at the largest heights
 //! that they allow: heights below that change nothing that was measured.
 
@@ -20,6 +22,7 @@ use crate::network::Network;
 use crate::observations::{Level, Node, Observation, Observations, Pin};
 use crate::points::spread;
 use hc::Monitor;
+use std::array::from_fn;
 use std::f64::consts::{LN_2, TAU};
 
 /// Most rounds of fitting network and heights in turn.
@@ -27,6 +30,9 @@ const ROUNDS: usize = 60;
 
 /// Relative change of the deviations that ends the rounds.
 const STILL: f64 = 5e-3;
+
+/// Share of the way to the likeliest deviations that is left after a round, at most, as far as two rounds are believed.
+const MOST_LEFT: f64 = 0.8;
 
 /// Deviations of heights are at least this share of the network's size.
 const LEAST: f64 = 1e-4;
@@ -96,6 +102,7 @@ impl<const D: usize> Heights<D> {
         };
         now.centre();
         now.receivers = now.off_levels().sqrt().max(least);
+        let mut before = None;
         for _ in 0..ROUNDS {
             let pinned = observations.clone().pinned(&now.pins());
             now.network = fitted(&pinned, now.network, monitor)?;
@@ -108,12 +115,19 @@ impl<const D: usize> Heights<D> {
             let of_transmitters: f64 = (0..observations.transmitters).map(placed).sum();
             let told = [(m, of_receivers, now.receivers), (n, of_transmitters, now.transmitters)]
                 .map(|(count, variances, tau)| (count - variances / tau.powi(2)).max(0.0));
-            let next = |square: f64, variances: f64, count: f64| (square + variances / count).sqrt().max(least);
+            let change = |square: f64, variances: f64, count: f64, tau: f64| {
+                ((square + variances / count).sqrt().max(least) / tau).ln()
+            };
             now.between = mean(&now.network.transmitters);
             let off = mean_square(&now.network.transmitters, now.between);
-            let next = [next(now.off_levels(), of_receivers, m), next(off, of_transmitters, n)];
-            let change = (next[0] / now.receivers).ln().abs().max((next[1] / now.transmitters).ln().abs());
-            [now.receivers, now.transmitters] = next;
+            let changes = [
+                change(now.off_levels(), of_receivers, m, now.receivers),
+                change(off, of_transmitters, n, now.transmitters),
+            ];
+            let whole = before.map_or(changes, |before: [f64; 2]| from_fn(|k| whole_way(before[k], changes[k])));
+            before = if before.is_none() { Some(changes) } else { None };
+            now.receivers = (now.receivers * whole[0].exp()).max(least);
+            now.transmitters = (now.transmitters * whole[1].exp()).max(least);
             now.told = told[0] + told[1];
             if known.is_none() {
                 let squares: f64 = observations.all().iter().map(|o| o.residual(&now.network).powi(2)).sum();
@@ -121,7 +135,7 @@ impl<const D: usize> Heights<D> {
                 let left = (observations.len() as f64 - unknowns).max(1.0);
                 now.deviation = (squares / left).sqrt();
             }
-            if change < STILL {
+            if changes.iter().all(|change| change.abs() < STILL) {
                 break;
             }
         }
@@ -329,6 +343,12 @@ impl<const D: usize> Heights<D> {
         }
         squares.map(|sum| (sum / observations.len().max(1) as f64).sqrt())
     }
+}
+
+/// The way to where changes end of which each is the same share of the one before it (Aitken), from two of them.
+fn whole_way(before: f64, change: f64) -> f64 {
+    let share = change / before;
+    if share > 0.0 { change / (1.0 - share.min(MOST_LEFT)) } else { change }
 }
 
 /// The network of least squares near one.
