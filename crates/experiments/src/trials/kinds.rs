@@ -16,6 +16,10 @@ use tdoa::{
 /// this many times farther than least squares that starts at the truth and has no other errors than noise.
 const WRONG: (f64, f64) = (0.02, 3.0);
 
+/// Share of the network's size above which a receiver's standard deviation has it called poorly determined: it is not
+/// said to be anywhere.
+const POORLY: f64 = 0.1;
+
 /// Mirror images of which all choices are looked at, at most.
 const MOST_SIDES: usize = 12;
 
@@ -242,7 +246,8 @@ pub struct Outcome {
     pub trusted: bool,
     /// Whether it calls the network unique.
     pub unique: bool,
-    /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres.
+    /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres; those
+    /// that are called poorly determined do not count.
     pub error: Option<f64>,
     /// The least such distance of the network, whichever sides its mirror images take, and of the alternatives that are
     /// listed beside it, metres.
@@ -312,9 +317,15 @@ impl Outcome {
         known: &[Option<[f64; 3]>],
         seen: &[Option<[f64; D]>],
     ) -> Outcome {
+        let [covariances, _] = found.trusted_covariances();
+        let is_placed = |i: usize| {
+            let variance = |rows: [[f64; D]; D]| (0..D).map(|k| rows[k][k]).sum::<f64>();
+            covariances[i].is_none_or(|rows| variance(rows).sqrt() <= POORLY * self.size)
+        };
+        let known: Vec<Option<[f64; 3]>> = known.iter().enumerate().map(|(i, p)| p.filter(|_| is_placed(i))).collect();
         let off = |receivers: &[Option<[f64; D]>]| {
             let raised = |p: &[f64; D]| from_fn(|axis| p.get(axis).copied().unwrap_or(0.0));
-            apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), known)
+            apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), &known)
         };
         let others = found.alternatives.iter().filter_map(|other| off(&other.receivers));
         let images = found.mirror_images.iter().filter_map(|image| {
@@ -333,7 +344,7 @@ impl Outcome {
             unique: found.unique,
             error: off(&found.receivers),
             nearest: others.chain(on_sides).reduce(f64::min),
-            covered: coverage(found, found.trusted_covariances()[0], seen),
+            covered: coverage(found, covariances, seen),
             ..self
         }
     }
