@@ -49,8 +49,6 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) anchors: Option<Anchors<D>>,
     /// How far nodes lie from their plane in space, where the measurements hardly tell it.
     pub(crate) plane_distances: Option<PlaneDistances>,
-    /// How far the receivers of a network with other heights, which are about as likely, lie from those of the best one.
-    pub(crate) other_heights: Option<f64>,
     /// What measurements in space say of heights.
     pub(crate) dimension_test: DimensionTest,
     /// The propagation speed, if it was to be estimated.
@@ -89,7 +87,6 @@ impl<'a, const D: usize> State<'a, D> {
             echoes: Vec::new(),
             anchors: None,
             plane_distances: None,
-            other_heights: None,
             dimension_test: DimensionTest::default(),
             speed: None,
             contradiction: None,

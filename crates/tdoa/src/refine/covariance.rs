@@ -12,9 +12,9 @@ use faer::Mat;
 use faer::Side;
 
 use super::cancel::{Cancelled, apart, check};
-use super::levels::add_levels;
+use super::levels::motions_of_levels;
+use super::motion::Motion;
 use super::normal::Normal;
-use super::projection::Motion;
 use super::refiner::NetworkRefiner;
 use super::rigid::rigid_motion;
 use crate::bordered::{Bordered, Placed};
@@ -153,6 +153,14 @@ impl<const D: usize> Reduced<'_, D> {
         self.refiner.normal()
     }
 
+    /// Adds what it adds that the values of pins are not known well.
+    pub(super) fn add_levels(&self, covariance: &mut Covariance<D>, observations: &Observations<D>, sigma: f64) {
+        if !observations.levels().is_empty() {
+            let motions = motions_of_levels(observations, self.normal(), &self.joint(), sigma);
+            motions.iter().for_each(|(factor, motion)| covariance.add_product(*factor, motion, motion));
+        }
+    }
+
     /// Whether the measurements determine all receivers, up to a rigid motion.
     pub(super) fn is_whole(&self) -> bool {
         self.zero == self.rigid && self.zero < self.free.len()
@@ -217,7 +225,7 @@ pub(crate) fn covariance<const D: usize>(
         loose_beside_held::<D>(&modes.as_ref(), zero, free)
     };
     let mut found = Covariance { receivers, joint, transmitters, loose };
-    add_levels(&mut found, observations, &reduced, sigma);
+    reduced.add_levels(&mut found, observations, sigma);
     Ok(Some(found))
 }
 
@@ -265,8 +273,10 @@ fn loose_beside_held<const D: usize>(modes: &faer::MatRef<'_, f64>, zero: usize,
 mod tests {
     use super::*;
     use crate::network::tests::random;
+    use crate::observations::{Level, Node, Pin};
     use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{SimulateOptions, simulate};
+    use faer::linalg::solvers::DenseSolveCore;
 
     #[test]
     fn receivers_that_are_all_held_have_no_error() {
@@ -310,7 +320,6 @@ mod tests {
                 }
             }
         }
-        use faer::linalg::solvers::DenseSolveCore;
         let expected = bordered.partial_piv_lu().inverse();
         let sigma = 0.02;
         let found = covariance(&observations, &network, sigma, &Monitor::default()).unwrap().unwrap();
@@ -361,5 +370,66 @@ mod tests {
         assert!(loose(&[]).contains(&2));
         assert_eq!(loose(&[0, 1, 3]), [2]);
         assert!(loose(&[0, 1, 2, 3]).is_empty());
+    }
+
+    /// Against the inverse of the equations of nodes and levels, by dense algebra.
+    #[test]
+    fn levels_are_unknowns() {
+        let (m, n, sigma) = (7, 9, 0.02);
+        let network: Network<3> = random(m, n, 5);
+        let measured = Pseudoranges::new(m, n, network.pseudoranges()).unwrap();
+        let nodes = (0..m).map(Node::Receiver).chain((0..n).map(Node::Transmitter));
+        // All three axes, so that no rigid motion is left.
+        let pin = |node, axis| Pin { node, axis, value: 0.0, precision: [0.7, 0.9, 2.0][axis] };
+        let pins: Vec<Pin> = nodes.flat_map(|node| (0..3).map(move |axis| pin(node, axis))).collect();
+        let share = |of: fn(Node) -> f64| -> Vec<f64> {
+            pins.iter().map(|pin| if pin.axis == 2 { of(pin.node) } else { 0.0 }).collect()
+        };
+        let levels = [
+            (share(|node| f64::from(u8::from(matches!(node, Node::Transmitter(_))))), 0.3),
+            (share(|node| if let Node::Receiver(i) = node { [1.0, -1.0][i % 2] } else { 0.0 }), 0.5),
+        ]
+        .map(|(shares, precision)| Level { shares, precision });
+        let observations = Observations::<3>::new(&measured, |_, _| true).pinned(&pins).levelled(levels.to_vec());
+
+        let at = |node: Node| match node {
+            Node::Receiver(i) => 3 * i,
+            Node::Transmitter(j) => 3 * m + 4 * j,
+        };
+        let nodes = 3 * m + 4 * n;
+        let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
+        for o in observations.all() {
+            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
+            let (i, j) = (at(Node::Receiver(o.receiver)), at(Node::Transmitter(o.transmitter)));
+            let u = |axis: usize| (s[axis] - r[axis]) / network.distance(o.receiver, o.transmitter);
+            let ray = (0..3).flat_map(|axis| [(i + axis, -u(axis)), (j + axis, u(axis))]);
+            rows.push(ray.chain([(j + 3, 1.0)]).collect());
+        }
+        for (k, pin) in pins.iter().enumerate() {
+            let own = (at(pin.node) + pin.axis, pin.precision);
+            let of_levels = levels.iter().enumerate().map(|(l, level)| (nodes + l, -pin.precision * level.shares[k]));
+            rows.push([own].into_iter().chain(of_levels).collect());
+        }
+        rows.extend(levels.iter().enumerate().map(|(l, level)| vec![(nodes + l, level.precision)]));
+        let mut jacobian = Mat::<f64>::zeros(rows.len(), nodes + levels.len());
+        for (k, row) in rows.iter().enumerate() {
+            row.iter().for_each(|(column, value)| jacobian[(k, *column)] += value);
+        }
+        let wanted = (jacobian.transpose() * &jacobian).partial_piv_lu().inverse();
+        let found = covariance(&observations, &network, sigma, &Monitor::default()).unwrap().unwrap();
+        let close = |found: f64, a: usize, b: usize| {
+            let wanted = sigma * sigma * wanted[(a, b)];
+            assert!((found - wanted).abs() < 1e-9 * sigma * sigma, "{a} {b}: {found} {wanted}");
+        };
+        for a in 0..3 * m {
+            (0..3 * m).for_each(|b| close(found.joint[a * 3 * m + b], a, b));
+            close(found.receivers[a / 3][a % 3][a % 3], a, a);
+        }
+        for (j, of) in found.transmitters.iter().enumerate() {
+            let (at, of) = (at(Node::Transmitter(j)), of.unwrap());
+            (0..3).for_each(|a| (0..3).for_each(|b| close(of.rows[a][b], at + a, at + b)));
+            (0..3).for_each(|a| close(of.border[a], at + 3, at + a));
+            close(of.corner, at + 3, at + 3);
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! projection off the Jacobian of all nodes.
 
 use super::cancel::{Cancelled, check};
+use super::motion::Motion;
 use super::solver::ReceiverEquations;
 use crate::bordered::{Bordered, Placed};
 use crate::network::Network;
@@ -23,30 +24,6 @@ pub(crate) struct Projection<'a, const D: usize = 2> {
     factors: Vec<Option<Bordered<D>>>,
     /// The receivers' normal equations with the transmitters eliminated.
     receivers: ReceiverEquations,
-}
-
-/// A change of all nodes.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Motion<const D: usize = 2> {
-    /// The coordinates of each receiver, one after the other, metres.
-    pub(crate) receivers: Vec<f64>,
-    /// Position and offset of each transmitter, metres.
-    pub(crate) transmitters: Vec<Placed<D>>,
-}
-
-impl<const D: usize> Motion<D> {
-    /// A network moved by this share of it.
-    pub(crate) fn applied(&self, network: &Network<D>, share: f64) -> Network<D> {
-        let mut moved = network.clone();
-        for (p, by) in moved.receivers.iter_mut().flatten().zip(&self.receivers) {
-            *p += share * by;
-        }
-        for (j, by) in self.transmitters.iter().enumerate() {
-            moved.transmitters[j].iter_mut().zip(&by.0).for_each(|(x, by)| *x += share * by);
-            moved.offsets[j] += share * by.1;
-        }
-        moved
-    }
 }
 
 impl<'a, const D: usize> Projection<'a, D> {

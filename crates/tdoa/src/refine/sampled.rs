@@ -16,7 +16,6 @@ use smallvec::SmallVec;
 
 use super::cancel::{Cancelled, check};
 use super::covariance::{Covariance, Reduced, own_covariance, reduced};
-use super::levels::add_levels;
 use crate::align::align;
 use crate::bordered::{Bordered, Placed};
 use crate::network::Network;
@@ -87,7 +86,7 @@ pub(crate) fn sampled_covariance<const D: usize>(
             Some(sum)
         });
     }
-    add_levels(&mut found, observations, &reduced, sigma);
+    reduced.add_levels(&mut found, observations, sigma);
     Ok(Some(found))
 }
 

@@ -39,7 +39,8 @@ use smallvec::SmallVec;
 use std::array::from_fn;
 
 use super::cancel::{Cancelled, apart, check};
-use super::projection::{Motion, Projection, dot, gram};
+use super::motion::Motion;
+use super::projection::{Projection, dot, gram};
 use crate::network::Network;
 use crate::observations::Observations;
 

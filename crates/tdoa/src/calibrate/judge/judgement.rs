@@ -31,7 +31,10 @@ const MOST_OUTLIERS: f64 = 0.3;
 
 /// Receivers of another network that are farther from those of the best one than this share of its size, root mean square,
 /// are elsewhere.
-pub(crate) const ELSEWHERE: f64 = 0.1;
+const ELSEWHERE: f64 = 0.1;
+
+/// Logarithm of the ratio of likelihoods up to which other heights may be the true ones: odds of a hundred.
+const AS_LIKELY: f64 = 2.0 * std::f64::consts::LN_10;
 
 /// What has been decided about the best network of a state.
 pub(crate) struct Judged<'s, const D: usize> {
@@ -61,6 +64,9 @@ pub(crate) struct Judged<'s, const D: usize> {
     pub(crate) weak: WeakNodes,
     /// Whether transmitters may be raised, where heights are told by what is expected of them.
     pub(crate) raised: bool,
+    /// How far the receivers of networks with other heights that are about as likely lie elsewhere, metres, where heights
+    /// are told by what is expected of them.
+    pub(crate) other_heights: Option<f64>,
     /// Transmitters of which the direction alone is told.
     pub(crate) far: Vec<Far<D>>,
     /// Kinds of nodes that lie in one line of space, about which the others may turn.
@@ -187,18 +193,20 @@ impl<const D: usize> State<'_, D> {
             may_be_raised(best, variance.max(0.0).sqrt())
         };
         let (others, agreeing) = self.others(&apart, &mirrored, &far);
-        let scattered = self.weak.is_none() && agreeing < SETTLED.min(options.search.max_starts) && {
-            let is_elsewhere = |other: &&Other<D>| {
-                let apart = align(&other.network.receivers, &best.receivers, false).map_or(0.0, |found| found.rms);
-                other.reason == Reason::Found && apart > ELSEWHERE * best.size()
-            };
-            others.iter().filter(is_elsewhere).count() > agreeing
+        let off = |other: &Other<D>| {
+            let apart = align(&other.network.receivers, &best.receivers, false).map_or(0.0, |found| found.rms);
+            Some(apart).filter(|apart| other.reason == Reason::Found && *apart > ELSEWHERE * best.size())
         };
+        let scattered = self.weak.is_none()
+            && agreeing < SETTLED.min(options.search.max_starts)
+            && others.iter().filter(|other| off(other).is_some()).count() > agreeing;
+        let as_likely = others.iter().filter(|other| self.plane_distances.is_some() && other.loss <= AS_LIKELY);
+        let other_heights = as_likely.filter_map(off).reduce(f64::max);
         let open = ellipse_radius.is_some() && weak.are_most()
             || !turning.is_empty()
             || scattered
             || raised
-            || self.other_heights.is_some();
+            || other_heights.is_some();
         let determined = !open && !transposed && 2 * doubtful.len() < best.receivers.len();
         let receivers_agree = apart.is_empty() && others.iter().all(|other| same_receivers(&other.network, best));
         let transmitters_agree = apart.is_empty() && others.iter().all(|other| same_transmitters(&other.network, best));
@@ -237,6 +245,7 @@ impl<const D: usize> State<'_, D> {
             doubtful,
             weak,
             raised,
+            other_heights,
             far,
             turning,
             mirrored,

@@ -2,7 +2,6 @@
 //! plane of the nodes.
 
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
-use crate::calibrate::judge::judgement::ELSEWHERE;
 use crate::calibrate::judge::neighbours::{Neighbour, Reason, each_once};
 use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::state::State;
@@ -15,9 +14,6 @@ const TOLD: f64 = 0.95;
 /// Deviation of the heights of the flatter kind of nodes as a share of the receivers' spread, above which no plane is
 /// worth an expectation.
 const NEARLY_FLAT: f64 = 0.25;
-
-/// Logarithm of the ratio of marginal likelihoods up to which other heights may be the true ones: odds of a hundred.
-const AS_LIKELY: f64 = 2.0 * std::f64::consts::LN_10;
 
 /// Heights that a plane and its tilt take up.
 const PLANE: f64 = 3.0;
@@ -42,11 +38,7 @@ impl<const D: usize> State<'_, D> {
         if told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
             return Ok(());
         }
-        let neighbours = neighbours_of_the_first(&modes);
-        let is_elsewhere =
-            |other: &&Neighbour<D>| other.loss < AS_LIKELY && other.rms() > ELSEWHERE * heights.network.size();
-        self.other_heights = neighbours.iter().filter(is_elsewhere).map(Neighbour::rms).reduce(f64::max);
-        self.neighbours.extend(neighbours);
+        self.neighbours.extend(neighbours_of_the_first(&modes));
         // Under the likeliest deviation alone the heights of few receivers would be too certain.
         let mut heights = heights.clone();
         heights.receivers =

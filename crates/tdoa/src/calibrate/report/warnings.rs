@@ -51,7 +51,7 @@ impl<const D: usize> State<'_, D> {
                 length(self.metre() * apart)
             )
         }));
-        warnings.extend(self.other_heights.map(|apart| {
+        warnings.extend(judged.other_heights.map(|apart| {
             format!(
                 "other heights are about as likely, with receivers that lie {} elsewhere (see alternatives): say how high some receivers are \
                  (--anchors with z alone will do), move some nodes farther from the plane of the others, or measure more",
