@@ -28,6 +28,9 @@ const NETWORKS: usize = 3;
 /// The likeliest networks in which receivers are turned to the other side.
 const TURNED: usize = 3;
 
+/// Receivers of which each is turned, at most: of more, each takes as long and the measurements tell more.
+const MOST_TURNED: usize = 16;
+
 /// By how much a planar network may be likelier than one in which receivers are turned, natural logarithm.
 const BEHIND: f64 = 10.0;
 
@@ -178,16 +181,20 @@ impl<const D: usize> Modes<'_, D> {
     /// The networks that receivers on other sides of the transmitters' plane lead to, about one level and about two.
     /// (Transmitters take the likelier side by themselves: they are placed by the receivers alone.)
     fn turned(&self, (_, heights): &Mode<D>) -> Result<Vec<Mode<D>>, Cancelled> {
+        let receivers = heights.network.receivers.len();
+        if receivers > MOST_TURNED {
+            return Ok(Vec::new());
+        }
         // Both sides of that plane are alike beforehand.
         let mut level = heights.about_transmitters();
         let mut least = None;
-        for _ in 0..2 * level.network.receivers.len() {
+        for _ in 0..2 * receivers {
             let kept = self.kept(&level.network);
             if kept.len() <= kept.unknowns() {
                 return Ok(Vec::new());
             }
             let mut turned = Vec::new();
-            for i in 0..level.network.receivers.len() {
+            for i in 0..receivers {
                 let mut network = level.network.clone();
                 let z = &mut network.receivers[i][D - 1];
                 *z = -*z;
