@@ -16,10 +16,6 @@ use tdoa::{
 /// this many times farther than least squares that starts at the truth and has no other errors than noise.
 const WRONG: (f64, f64) = (0.02, 3.0);
 
-/// Share of the network's size above which a receiver's standard deviation has it called poorly determined: it is not
-/// said to be anywhere.
-const POORLY: f64 = 0.1;
-
 /// Mirror images of which all choices are looked at, at most.
 const MOST_SIDES: usize = 12;
 
@@ -246,8 +242,7 @@ pub struct Outcome {
     pub trusted: bool,
     /// Whether it calls the network unique.
     pub unique: bool,
-    /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres; those
-    /// that are called poorly determined do not count.
+    /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres.
     pub error: Option<f64>,
     /// The least such distance of the network, whichever sides its mirror images take, and of the alternatives that are
     /// listed beside it, metres.
@@ -317,15 +312,9 @@ impl Outcome {
         known: &[Option<[f64; 3]>],
         seen: &[Option<[f64; D]>],
     ) -> Outcome {
-        let [covariances, _] = found.trusted_covariances();
-        let is_placed = |i: usize| {
-            let variance = |rows: [[f64; D]; D]| (0..D).map(|k| rows[k][k]).sum::<f64>();
-            covariances[i].is_none_or(|rows| variance(rows).sqrt() <= POORLY * self.size)
-        };
-        let known: Vec<Option<[f64; 3]>> = known.iter().enumerate().map(|(i, p)| p.filter(|_| is_placed(i))).collect();
         let off = |receivers: &[Option<[f64; D]>]| {
             let raised = |p: &[f64; D]| from_fn(|axis| p.get(axis).copied().unwrap_or(0.0));
-            apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), &known)
+            apart(&receivers.iter().map(|p| p.as_ref().map(raised)).collect::<Vec<_>>(), known)
         };
         let others = found.alternatives.iter().filter_map(|other| off(&other.receivers));
         let images = found.mirror_images.iter().filter_map(|image| {
@@ -344,7 +333,7 @@ impl Outcome {
             unique: found.unique,
             error: off(&found.receivers),
             nearest: others.chain(on_sides).reduce(f64::min),
-            covered: coverage(found, covariances, seen),
+            covered: coverage(found, found.trusted_covariances()[0], seen),
             ..self
         }
     }
@@ -393,6 +382,17 @@ mod tests {
         let right = found.iter().filter(|found| found.error.unwrap() < 1.1 * found.oracle.unwrap());
         let (held, all) = right.clone().fold((0, 0), |(a, b), found| (a + found.covered.0, b + found.covered.1));
         assert!(right.count() >= 3 && 10 * held >= 9 * all, "{found:?}");
+        assert!(found.iter().all(|found| !(found.trusted && found.is_wrong())), "{found:?}");
+    }
+
+    #[test]
+    fn two_levels_are_said() {
+        let Instance { measured, options, .. } = Kind::TwoHeights.network(0).unwrap();
+        let Ok(Calibrated::Space(found)) = calibrate_either(&measured, &options, &Monitor::default()) else { panic!() };
+        // Anchors at 0.3 and 2.3 m.
+        let levels = found.plane_distances.and_then(|distances| distances.levels).unwrap();
+        assert!((levels / 2.0).ln().abs() < 0.3, "{levels}");
+        assert!(found.warnings.iter().any(|warning| warning.contains("two heights")), "{:?}", found.warnings);
     }
 
     #[test]

@@ -306,8 +306,7 @@ pub(super) fn kinds(results: &Path) -> Result<String> {
         "Networks of whose model nothing is said (default options). Wrong are receivers farther from the truth than 2 % of the network's size and \
          three times what least squares from the truth has, in the plane where all nodes lie in one. Trusted is exit status 0. Not listed: neither \
          the network, nor one with other sides of its mirror images, nor an alternative beside it is right. Of a source that flies straight nothing \
-         is right: receivers may be turned about its line. Where heights alone are known, they must be right too. Receivers that are called \
-         poorly determined, with a standard deviation above a tenth of the network's size, do not count.\n\n",
+         is right: receivers may be turned about its line. Where heights alone are known, they must be right too.\n\n",
     );
     text += &head(&[
         "",
