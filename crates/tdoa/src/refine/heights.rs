@@ -297,7 +297,7 @@ impl<const D: usize> Heights<D> {
         receivers.chain(transmitters.map(|j| pin(Node::Transmitter(j), self.between, self.transmitters))).collect()
     }
 
-    /// The levels of [`Heights::pins`], none of which is known better than its own size.
+    /// The levels of [`Heights::pins`]. Beforehand each is known to within its own size: the measurements may tell no more.
     pub(crate) fn levels(&self) -> Vec<Level> {
         let (receivers, transmitters) = (self.network.receivers.len(), self.network.transmitters.len());
         let of_plane = vec![0.0; receivers].into_iter().chain(vec![1.0; transmitters]).collect();
