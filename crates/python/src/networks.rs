@@ -268,7 +268,7 @@ pub(crate) fn cramer_rao(
         if !(sigma > 0.0 && sigma.is_finite()) {
             return Err(Failure::Input(format!("sigma must be positive and finite, not {sigma}")));
         }
-        let truth = Network { receivers, transmitters, offsets: vec![0.0; n] };
+        let truth = Network::new(receivers, transmitters, vec![0.0; n]);
         let values = truth.pseudoranges().into_iter().zip(&used).map(|(f, &used)| if used { f } else { f64::NAN });
         let measured = Pseudoranges::new(m, n, values.collect()).map_err(Failure::input)?;
         Ok(py.detach(|| bound(&measured, &vec![false; m * n], &truth, sigma)))

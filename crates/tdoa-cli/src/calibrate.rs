@@ -15,8 +15,8 @@ use tdoa::picture::picture;
 use tdoa::read::{Nodes, Units};
 use tdoa::summary::doubt_of_units;
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Emissions, Errors, Monitor, Pseudoranges, ReceiverDelays,
-    Unfinished, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Errors, Monitor, Pseudoranges, ReceiverDelays, Unfinished,
+    calibrate_with,
 };
 
 pub(crate) use arguments::Arguments;
@@ -169,7 +169,7 @@ impl Task<'_> {
             Delays::Auto => ReceiverDelays::Auto,
             Delays::All => ReceiverDelays::All,
         };
-        options.emissions = Emissions::of_ranges(arguments.ranges);
+        options.emissions = arguments.sending.emissions();
         options.errors = match arguments.errors {
             Side::Auto => Errors::Auto,
             Side::Symmetric => Errors::Symmetric,

@@ -1,6 +1,7 @@
 //! The program `tdoa`: calibration of sensor networks from arrival times alone.
 
 mod calibrate;
+mod clocks;
 mod frame;
 mod input;
 mod known;

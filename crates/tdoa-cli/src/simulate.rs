@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use cli::files::check_directory;
-use tdoa::{Emissions, Layout, Pseudoranges, ReceiverFault, SimulateOptions, simulate};
+use tdoa::{Layout, Pseudoranges, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
+use crate::clocks::EmissionArguments;
 use crate::output;
 use crate::units::{Unit, UnitArguments};
 
@@ -67,9 +68,8 @@ pub(crate) struct Arguments {
     /// Standard deviation of a constant delay of each receiver, metres.
     #[arg(long, default_value_t = 0.0)]
     delays: f64,
-    /// Makes distances, as of transmitters whose send times are known: offsets are zero.
-    #[arg(long)]
-    ranges: bool,
+    #[command(flatten)]
+    sending: EmissionArguments,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -130,7 +130,7 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     options.candidates = arguments.candidates;
     options.fault = arguments.fault.as_deref().map(fault).transpose()?;
     options.delays = arguments.delays;
-    options.emissions = Emissions::of_ranges(arguments.ranges);
+    options.emissions = arguments.sending.emissions();
     options.seed = arguments.seed;
     let unit = unit_of(&arguments.units)?;
     let simulation = crate::on_threads(arguments.threads, || simulate(&options))?.map_err(Failure::unusable)?;

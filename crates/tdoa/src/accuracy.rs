@@ -1,6 +1,7 @@
 //! How near a network comes to the truth, and how near the noise lets any estimate come.
 
 use crate::align::align;
+use crate::clocks::Clocks;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::spread;
@@ -22,6 +23,20 @@ use hc::Monitor;
 /// If the sizes of network, measurements and outliers differ.
 pub fn cramer_rao<const D: usize>(measured: &Pseudoranges, outliers: &[bool], truth: &Network<D>, noise: f64) -> f64 {
     bound(&without(measured, outliers), truth, noise)
+}
+
+/// [`cramer_rao`] with what is unknown of the clocks of transmitters and recorders.
+///
+/// # Panics
+/// If the sizes of network, measurements and outliers differ.
+pub fn cramer_rao_with_clocks<const D: usize>(
+    measured: &Pseudoranges,
+    outliers: &[bool],
+    truth: &Network<D>,
+    noise: f64,
+    clocks: &Clocks,
+) -> f64 {
+    cramer_rao(&clocks.of(measured), outliers, truth, noise)
 }
 
 /// [`cramer_rao`] with unknown delays in all measurements of these receivers, in metres.
@@ -62,7 +77,9 @@ pub fn cramer_rao_with_delays<const D: usize>(
         return f64::INFINITY;
     }
     let pairs = (0..size).flat_map(|a| (0..size).map(move |b| (a, b)));
-    let added: f64 = pairs.map(|(a, b)| inverse[(a, b)] * dot(&parts[a].1.receivers, &parts[b].1.receivers)).sum();
+    let coordinates = |a: usize| &parts[a].1.reduced[..D * truth.receivers.len()];
+    let of_receivers = |a: usize, b: usize| dot(coordinates(a), coordinates(b));
+    let added: f64 = pairs.map(|(a, b)| inverse[(a, b)] * of_receivers(a, b)).sum();
     (plain * plain + noise * noise * added / truth.receivers.len() as f64).sqrt()
 }
 
@@ -106,8 +123,9 @@ pub fn offset_error<const D: usize>(found: &Network<D>, truth: &Network<D>) -> f
 
 #[cfg(test)]
 mod tests {
-    use super::{cramer_rao, cramer_rao_with_delays, offset_error, position_error};
+    use super::{cramer_rao, cramer_rao_with_clocks, cramer_rao_with_delays, offset_error, position_error};
     use crate::align::align;
+    use crate::clocks::{Clocks, ReceiverClocks};
     use crate::network::Network;
     use crate::network::tests::random;
     use crate::observations::Observations;
@@ -175,6 +193,36 @@ mod tests {
         assert!(with(&[0]) > plain && with(&[0, 4]) > with(&[0]) && with(&[0, 4]).is_finite());
         let but = |one: usize| -> Vec<usize> { (0..9).filter(|&i| i != one).collect() };
         assert!((with(&but(0)) / with(&but(5)) - 1.0).abs() < 1e-6);
+    }
+
+    /// Clocks of all receivers that were started apart are delays of all but one.
+    #[test]
+    fn offsets_of_recorders_are_delays() {
+        fn agree<const D: usize>(m: usize, n: usize) {
+            let truth: Network<D> = random(m, n, 11);
+            let measured = Pseudoranges::new(m, n, truth.pseudoranges()).unwrap();
+            let outliers: Vec<bool> = (0..m * n).map(|k| k % 17 == 3).collect();
+            let clocks = Clocks { receivers: ReceiverClocks::Offset, ..Clocks::default() };
+            let with_clocks = cramer_rao_with_clocks(&measured, &outliers, &truth, 0.01, &clocks);
+            let others: Vec<usize> = (1..m).collect();
+            let with_delays = cramer_rao_with_delays(&measured, &outliers, &truth, 0.01, &others);
+            assert!((with_clocks / with_delays - 1.0).abs() < 1e-6, "{with_clocks} {with_delays}");
+            // Two receivers a recorder, and all of them on one.
+            let names = |channels: usize| (0..m).map(|i| format!("rec{}", i / channels)).collect();
+            let shared = |channels: usize| {
+                let measured = measured.clone().with_recorders(names(channels)).unwrap();
+                cramer_rao_with_clocks(&measured, &outliers, &truth, 0.01, &clocks)
+            };
+            let plain = cramer_rao(&measured, &outliers, &truth, 0.01);
+            assert!(plain < shared(2) && shared(2) < with_clocks && (shared(m) / plain - 1.0).abs() < 1e-9);
+            // Rates cost more.
+            let rates = Clocks { receivers: ReceiverClocks::Rate, ..Clocks::default() };
+            let bound = |measured: &Pseudoranges| cramer_rao_with_clocks(measured, &outliers, &truth, 0.01, &rates);
+            let late = measured.map(|_, j, f| f + 1e4 * (j as f64).sin());
+            assert!(bound(&late) > with_clocks && bound(&late).is_finite());
+        }
+        agree::<2>(8, 12);
+        agree::<3>(11, 16);
     }
 
     #[test]

@@ -50,6 +50,7 @@ impl<const D: usize> Transform<D> {
             receivers: network.receivers.iter().map(|&p| self.apply(p)).collect(),
             transmitters: network.transmitters.iter().map(|&p| self.apply(p)).collect(),
             offsets: network.offsets.iter().map(|o| self.scale * o).collect(),
+            clocks: network.clocks.iter().map(|clock| clock.map(|x| self.scale * x)).collect(),
         }
     }
 

@@ -54,9 +54,9 @@ mod bordered;
 pub mod calibrate;
 mod candidates;
 mod cells;
+mod clocks;
 pub mod degeneracy;
 mod duplicates;
-mod emissions;
 mod flatness;
 mod generated;
 #[cfg(feature = "pictures")]
@@ -87,7 +87,7 @@ pub use calibrate::{
     SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate, calibrate_with,
 };
 pub use cells::Cells;
-pub use emissions::Emissions;
+pub use clocks::{Clocks, Emissions, ReceiverClocks};
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;

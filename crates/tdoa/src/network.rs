@@ -16,9 +16,18 @@ pub struct Network<const D: usize = 2> {
     pub transmitters: Vec<[f64; D]>,
     /// Offsets o_j of the transmitters: send time times propagation speed.
     pub offsets: Vec<f64>,
+    /// Per receiver, what its clock adds to measurements: an offset, and a drift over half the recording. Empty where all
+    /// receivers share a clock.
+    #[serde(skip)]
+    pub(crate) clocks: Vec<[f64; 2]>,
 }
 
 impl<const D: usize> Network<D> {
+    /// A network of these nodes, whose receivers share a clock.
+    pub fn new(receivers: Vec<[f64; D]>, transmitters: Vec<[f64; D]>, offsets: Vec<f64>) -> Self {
+        Network { receivers, transmitters, offsets, clocks: Vec::new() }
+    }
+
     /// Distance between receiver `i` and transmitter `j`.
     pub fn distance(&self, i: usize, j: usize) -> f64 {
         distance(self.receivers[i], self.transmitters[j])
@@ -76,7 +85,13 @@ impl<const D: usize> Network<D> {
 
     /// Whether every number of the network is finite.
     pub fn is_finite(&self) -> bool {
-        self.receivers.iter().chain(&self.transmitters).flatten().chain(&self.offsets).all(|x| x.is_finite())
+        self.receivers
+            .iter()
+            .chain(&self.transmitters)
+            .flatten()
+            .chain(&self.offsets)
+            .chain(self.clocks.iter().flatten())
+            .all(|x| x.is_finite())
     }
 
     /// The network's size: root mean square distance of the receivers from their centroid, in
@@ -107,15 +122,11 @@ pub(crate) mod tests {
         let receivers = (0..receivers).map(|_| point()).collect();
         let positions: Vec<[f64; D]> = (0..transmitters).map(|_| point()).collect();
         let offsets = positions.iter().map(|_| rng.sample(StandardNormal)).collect();
-        Network { receivers, transmitters: positions, offsets }
+        Network::new(receivers, positions, offsets)
     }
 
     fn square() -> Network {
-        Network {
-            receivers: vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]],
-            transmitters: vec![[3.0, 4.0], [0.0, 0.0]],
-            offsets: vec![1.0, -2.0],
-        }
+        Network::new(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[3.0, 4.0], [0.0, 0.0]], vec![1.0, -2.0])
     }
 
     #[test]
@@ -131,11 +142,11 @@ pub(crate) mod tests {
     #[test]
     fn residuals_in_space() {
         // By hand: distances 3, 7 and 0, 2.
-        let network = Network {
-            receivers: vec![[1.0, 2.0, 2.0], [-1.0, 1.0, 4.0]],
-            transmitters: vec![[0.0, 0.0, 0.0], [3.0, 5.0, -4.0]],
-            offsets: vec![0.5, -1.0],
-        };
+        let network = Network::new(
+            vec![[1.0, 2.0, 2.0], [-1.0, 1.0, 4.0]],
+            vec![[0.0, 0.0, 0.0], [3.0, 5.0, -4.0]],
+            vec![0.5, -1.0],
+        );
         let f = Pseudoranges::new(2, 2, vec![3.5, 6.25, 18f64.sqrt() + 0.5, 12.0]).unwrap();
         let residuals = network.residuals(&f);
         assert_eq!(residuals[..3], [0.0, 0.25, 0.0]);

@@ -1,5 +1,6 @@
 //! The measured cells as flat lists, for the inner loops.
 
+use crate::clocks::{ClockTerms, ClockUnknowns, Emissions};
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
@@ -14,15 +15,32 @@ pub(crate) struct Observation {
     pub(crate) value: f64,
     /// One over the standard deviation given for the cell, or 1 where none is given.
     pub(crate) precision: f64,
+    /// When, by the recorder's clock, as a share of half the recording about its middle; 0 where clocks do not drift.
+    pub(crate) time: f64,
 }
 
 impl Observation {
+    /// Pseudorange less what the recorder's clock adds in a network, metres.
+    #[inline]
+    pub(crate) fn synchronised<const D: usize>(&self, network: &Network<D>) -> f64 {
+        match network.clocks.get(self.receiver) {
+            None => self.value,
+            Some([offset, drift]) => self.value - offset - drift * self.time,
+        }
+    }
+
+    /// The distance between receiver and transmitter that was measured, by the clocks of a network, metres.
+    #[inline]
+    pub(crate) fn length<const D: usize>(&self, network: &Network<D>) -> f64 {
+        self.synchronised(network) - network.offsets[self.transmitter]
+    }
+
     /// Residual divided by the cell's standard deviation.
     #[inline]
     pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
         let (i, j) = (self.receiver, self.transmitter);
         let d = distance(network.receivers[i], network.transmitters[j]);
-        (self.value - network.offsets[j] - d) * self.precision
+        (self.length(network) - d) * self.precision
     }
 }
 
@@ -106,8 +124,10 @@ pub(crate) struct Observations<const D: usize = 2> {
     pins: Vec<Pin>,
     levels: Vec<Level>,
     other_unknowns: usize,
-    /// Whether they are distances: no transmitter has an offset.
-    are_ranges: bool,
+    /// What is known of the times at which transmitters send.
+    emissions: Emissions,
+    clocks: ClockUnknowns,
+    clock_terms: ClockTerms,
 }
 
 impl<const D: usize> Observations<D> {
@@ -115,7 +135,8 @@ impl<const D: usize> Observations<D> {
     pub(crate) fn new(measured: &Pseudoranges, keep: impl Fn(usize, usize) -> bool) -> Self {
         let observe = |(i, j, value): (usize, usize, &f64)| {
             let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
-            keep(i, j).then_some(Observation { receiver: i, transmitter: j, value: *value, precision })
+            let time = measured.unknown_clocks().map_or(0.0, |recorders| recorders.time(i, j));
+            keep(i, j).then_some(Observation { receiver: i, transmitter: j, value: *value, precision, time })
         };
         Observations::in_columns(measured, measured.cells().iter().filter_map(observe).collect())
     }
@@ -127,7 +148,7 @@ impl<const D: usize> Observations<D> {
         let first = |j: usize| entries.partition_point(|o| o.transmitter < j);
         let columns = (0..=measured.transmitters()).map(first).collect();
         let all = Observations::of(measured.receivers(), entries, columns);
-        Observations { are_ranges: measured.are_ranges(), ..all }
+        all.with_clocks(measured.emissions(), ClockUnknowns::new(measured.emissions(), measured.unknown_clocks()))
     }
 
     /// All candidates of all measured cells, as if each were a measurement: at most one of a cell is right, the
@@ -135,7 +156,8 @@ impl<const D: usize> Observations<D> {
     pub(crate) fn of_all_candidates(measured: &Pseudoranges) -> Self {
         let observe = |(i, j, _): (usize, usize, &f64)| {
             let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
-            let of = move |value: &f64| Observation { receiver: i, transmitter: j, value: *value, precision };
+            let time = measured.unknown_clocks().map_or(0.0, |recorders| recorders.time(i, j));
+            let of = move |value: &f64| Observation { receiver: i, transmitter: j, value: *value, precision, time };
             measured.candidates(i, j).iter().map(of)
         };
         Observations::in_columns(measured, measured.cells().iter().flat_map(observe).collect())
@@ -159,7 +181,9 @@ impl<const D: usize> Observations<D> {
             pins: Vec::new(),
             levels: Vec::new(),
             other_unknowns: 0,
-            are_ranges: false,
+            emissions: Emissions::Unknown,
+            clocks: ClockUnknowns::default(),
+            clock_terms: ClockTerms::default(),
         }
     }
 
@@ -196,13 +220,27 @@ impl<const D: usize> Observations<D> {
             columns.push(entries.len());
         }
         let held: Vec<bool> = self.held.iter().copied().chain([false]).collect();
-        self.like(Observations::of(self.receivers + 1, entries, columns).holding(&held))
+        let split = self.like(Observations::of(self.receivers + 1, entries, columns).holding(&held));
+        split.with_clocks(self.emissions, self.clocks.split(receiver))
     }
 
     /// Measurements of the same kind with the same pins.
     fn like(&self, others: Self) -> Self {
         let others = others.pinned_like(self).with_other_unknowns(self.other_unknowns);
-        Observations { are_ranges: self.are_ranges, ..others }
+        others.with_clocks(self.emissions, self.clocks.clone())
+    }
+
+    /// These measurements with what is unknown of clocks.
+    fn with_clocks(self, emissions: Emissions, clocks: ClockUnknowns) -> Self {
+        let first = D * self.receivers;
+        let clock_terms = if clocks.count() > 0 {
+            ClockTerms::new(
+                self.entries.iter().map(|o| clocks.terms(o.receiver, o.time).map(move |(at, x)| (first + at, x))),
+            )
+        } else {
+            ClockTerms::default()
+        };
+        Observations { emissions, clocks, clock_terms, ..self }
     }
 
     /// These measurements, each with a share of its information.
@@ -275,15 +313,39 @@ impl<const D: usize> Observations<D> {
         }
     }
 
-    /// Whether they are distances: no transmitter has an offset.
-    pub(crate) fn are_ranges(&self) -> bool {
-        self.are_ranges
+    /// What is known of the times at which transmitters send.
+    pub(crate) fn emissions(&self) -> Emissions {
+        self.emissions
     }
 
-    /// What a measurement says of its transmitter's offset: `x`, and nothing if it is a distance.
+    /// Whether they are distances, but for what all share: no transmitter has an offset of its own.
+    #[inline]
+    pub(crate) fn are_ranges(&self) -> bool {
+        self.emissions != Emissions::Unknown
+    }
+
+    /// What a measurement says of its transmitter's own offset: `x`, and nothing if there is none.
     #[inline]
     pub(crate) fn of_offset(&self, x: f64) -> f64 {
-        if self.are_ranges { 0.0 } else { x }
+        if self.are_ranges() { 0.0 } else { x }
+    }
+
+    /// The unknowns of clocks.
+    pub(crate) fn clocks(&self) -> &ClockUnknowns {
+        &self.clocks
+    }
+
+    /// Number of unknowns that are left once transmitters are eliminated: coordinates of receivers, then
+    /// unknowns of clocks.
+    #[inline]
+    pub(crate) fn reduced(&self) -> usize {
+        D * self.receivers + self.clocks.count()
+    }
+
+    /// How the measurements depend on unknowns of clocks.
+    #[inline]
+    pub(crate) fn clock_terms(&self) -> &ClockTerms {
+        &self.clock_terms
     }
 
     /// All of them, transmitter by transmitter.
@@ -311,16 +373,18 @@ impl<const D: usize> Observations<D> {
         self.entries.len()
     }
 
-    /// Number of unknowns of the network: positions, and offsets unless these are distances, up to a rigid motion or without the
-    /// receivers that are held and less the coordinates that were measured. Held receivers leave the
+    /// Number of unknowns: positions, offsets of transmitters that have their own, and those of clocks, up to a rigid motion or
+    /// without the receivers that are held and less the coordinates that were measured. Held receivers leave the
     /// rotations about them: one of them one in the plane and three in space, two one in space.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
         let loose = D.saturating_sub(held);
         let measured = self.pins.len() + if self.pins.is_empty() { 0 } else { self.rigid_motions() };
-        let placed = if self.are_ranges { D } else { D + 1 };
+        let placed = if self.are_ranges() { D } else { D + 1 };
         let known = D * held + measured.max(loose * (loose + 1) / 2);
-        (D * self.receivers + placed * self.transmitters).saturating_sub(known) + self.other_unknowns
+        (D * self.receivers + placed * self.transmitters).saturating_sub(known)
+            + self.clocks.count()
+            + self.other_unknowns
     }
 }
 

@@ -6,7 +6,9 @@ pub use error::{MAX_CELLS, MAX_MAGNITUDE, PseudorangeError};
 
 use crate::candidates::Candidates;
 use crate::cells::Cells;
+use crate::clocks::{Emissions, Recorders};
 use crate::median::median;
+use std::collections::HashMap;
 
 /// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
 /// rows, transmitters j in columns. Cells that were not measured are missing. Where a detector found several
@@ -34,8 +36,12 @@ pub struct Pseudoranges {
     transmitter_names: Vec<String>,
     /// Whether the receivers' names were given, not counted.
     receivers_named: bool,
-    /// Whether the values are distances: no transmitter has an offset.
-    are_ranges: bool,
+    /// What is known of the times at which transmitters send.
+    emissions: Emissions,
+    /// The recorder of each receiver, by name; each is one by itself where nothing is said.
+    recorders: Option<Vec<String>>,
+    /// What is unknown of the recorders' clocks.
+    unknown_clocks: Option<Recorders>,
 }
 
 impl Pseudoranges {
@@ -91,7 +97,9 @@ impl Pseudoranges {
             receiver_names: (1..=cells.rows()).map(|i| format!("r{i}")).collect(),
             transmitter_names: (1..=cells.columns()).map(|j| format!("s{j}")).collect(),
             receivers_named: false,
-            are_ranges: false,
+            emissions: Emissions::Unknown,
+            recorders: None,
+            unknown_clocks: None,
             sigmas: None,
             are_shares: false,
             candidates: None,
@@ -240,14 +248,54 @@ impl Pseudoranges {
         Ok(self.choosing(|_, _, _| 0))
     }
 
-    /// This matrix as one of distances.
-    pub(crate) fn into_ranges(self) -> Pseudoranges {
-        Pseudoranges { are_ranges: true, ..self }
+    /// This matrix as one of transmitters of whose times of sending this is known.
+    pub(crate) fn with_emissions(self, emissions: Emissions) -> Pseudoranges {
+        Pseudoranges { emissions, ..self }
     }
 
-    /// Whether the values are distances: no transmitter has an offset.
+    /// What is known of the times at which transmitters send.
+    pub(crate) fn emissions(&self) -> Emissions {
+        self.emissions
+    }
+
+    /// Whether the values are distances, but for what all share: no transmitter has an offset of its own.
     pub(crate) fn are_ranges(&self) -> bool {
-        self.are_ranges
+        self.emissions != Emissions::Unknown
+    }
+
+    /// This matrix with the recorder of each receiver, by name: receivers of one recorder share a clock where recorders have
+    /// [clocks of their own](crate::ReceiverClocks). Without, each receiver is a recorder by itself.
+    ///
+    /// # Errors
+    /// If there are not as many names as receivers.
+    pub fn with_recorders(self, recorders: Vec<String>) -> Result<Self, PseudorangeError> {
+        check_count("recorders", "receiver", self.receivers(), recorders.len())?;
+        Ok(Pseudoranges { recorders: Some(recorders), ..self })
+    }
+
+    /// Name of a receiver's recorder: its own where no recorders were given.
+    pub fn recorder_name(&self, receiver: usize) -> &str {
+        &self.recorders.as_ref().unwrap_or(&self.receiver_names)[receiver]
+    }
+
+    /// The recorder of each receiver, counted from 0 in the order of the receivers.
+    pub fn recorders(&self) -> Vec<usize> {
+        let mut seen = HashMap::new();
+        let mut number = |name| {
+            let next = seen.len();
+            *seen.entry(name).or_insert(next)
+        };
+        (0..self.receivers()).map(|i| number(self.recorder_name(i))).collect()
+    }
+
+    /// This matrix with what is unknown of the recorders' clocks; `None` where all receivers share a clock.
+    pub(crate) fn with_unknown_clocks(self, unknown_clocks: Option<Recorders>) -> Pseudoranges {
+        Pseudoranges { unknown_clocks, ..self }
+    }
+
+    /// What is unknown of the recorders' clocks; `None` where all receivers share a clock.
+    pub(crate) fn unknown_clocks(&self) -> Option<&Recorders> {
+        self.unknown_clocks.as_ref()
     }
 
     /// Number of receivers (rows).
@@ -401,7 +449,9 @@ impl Pseudoranges {
             receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
-            are_ranges: self.are_ranges,
+            emissions: self.emissions,
+            recorders: self.recorders.as_ref().map(|all| receivers.iter().map(|&i| all[i].clone()).collect()),
+            unknown_clocks: self.unknown_clocks.as_ref().map(|all| all.select(receivers, transmitters)),
             are_shares: self.are_shares,
             cells: self.cells.select(receivers, transmitters),
             sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),

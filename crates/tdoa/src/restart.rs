@@ -96,7 +96,7 @@ impl Restarts {
         }
         let n = observations.transmitters;
         let transmitters = (0..n).map(|_| from_fn(|_| self.diameter * normal() / 2.0)).collect();
-        let mut network = Network { receivers, transmitters, offsets: vec![0.0; n] };
+        let mut network = Network::new(receivers, transmitters, vec![0.0; n]);
         place_transmitters(observations, &mut network, &Loss { nu: SEARCH_NU, scale: 0.1 * self.diameter });
         network
     }

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 pub use layout::Layout;
 
-use crate::emissions::Emissions;
+use crate::clocks::Emissions;
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::{PseudorangeError, Pseudoranges};
@@ -60,9 +60,16 @@ pub struct SimulateOptions<const D: usize = 2> {
     pub candidates: usize,
     /// Error of the first receiver. Default `None`.
     pub fault: Option<ReceiverFault>,
-    /// Standard deviation of a constant error of each receiver, metres. Default 0.
+    /// Standard deviation of a constant error of each recorder, metres. Default 0.
     pub delays: f64,
-    /// Whether transmitters have offsets. Default [`Emissions::Unknown`]: they do.
+    /// Standard deviation of the rates of the recorders' clocks, as a share: 1e-6 is one part in a million. Default 0.
+    pub rates: f64,
+    /// Receivers that share a recorder, 1 or more: the first ones, the next ones, and so on. Default 1.
+    pub channels: usize,
+    /// Transmitters send at times that are uniform over this, metres: seconds times the speed. Default `None`: as the layout
+    /// says.
+    pub duration: Option<f64>,
+    /// Whether transmitters have offsets of their own, one offset, or none. Default [`Emissions::Unknown`]: each has one.
     pub emissions: Emissions,
     /// Seed of the random numbers. Default 0.
     pub seed: u64,
@@ -91,6 +98,9 @@ impl<const D: usize> SimulateOptions<D> {
             candidates: 1,
             fault: None,
             delays: 0.0,
+            rates: 0.0,
+            channels: 1,
+            duration: None,
             emissions: Emissions::Unknown,
             seed: 0,
         }
@@ -106,6 +116,8 @@ pub struct Simulation<const D: usize = 2> {
     pub pseudoranges: Pseudoranges,
     /// Which cells are outliers, row-major.
     pub outliers: Vec<bool>,
+    /// The clock of each receiver's recorder: its offset in metres, and its rate as a share.
+    pub clocks: Vec<[f64; 2]>,
 }
 
 /// Why nothing can be simulated.
@@ -169,14 +181,21 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
     }
     let mut rng = Pcg64Mcg::seed_from_u64(options.seed);
     let mut network = options.layout.network(m, n, &mut rng);
-    if options.emissions == Emissions::Known {
-        network.offsets.fill(0.0);
+    if let Some(duration) = options.duration {
+        network.offsets.iter_mut().for_each(|offset| *offset = duration * rng.random::<f64>());
     }
+    options.emissions.settle(&mut network.offsets);
     let mut values = network.pseudoranges();
     for value in &mut values {
         *value += options.noise * rng.sample::<f64, _>(StandardNormal);
     }
-    spoil(&mut values, &network, options, &mut rng);
+    spoil(&mut values, &network, options);
+    let clocks = clocks(options, &mut rng);
+    for ((value, clock), reading) in
+        values.iter_mut().zip(clocks.iter().flat_map(|c| std::iter::repeat_n(c, n))).zip(network.pseudoranges())
+    {
+        *value += clock[0] + clock[1] * reading;
+    }
     let mut order = audible(&network, options.hearing);
     for (k, value) in values.iter_mut().enumerate() {
         if order.binary_search(&k).is_err() {
@@ -210,12 +229,29 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
             further.push((k / n, k % n, value + options.detour_size * late));
         }
     }
-    let pseudoranges = Pseudoranges::new(m, n, values)?.with_candidates(further)?;
-    Ok(Simulation { network, pseudoranges, outliers })
+    let mut pseudoranges = Pseudoranges::new(m, n, values)?.with_candidates(further)?;
+    if options.channels > 1 {
+        let channel = |i: usize| (i / options.channels + 1, i % options.channels + 1);
+        let names = (0..m).map(channel).map(|(recorder, channel)| format!("rec{recorder}:{channel}")).collect();
+        let recorders = (0..m).map(channel).map(|(recorder, _)| format!("rec{recorder}")).collect();
+        pseudoranges = pseudoranges.with_receiver_names(names)?.with_recorders(recorders)?;
+    }
+    Ok(Simulation { network, pseudoranges, outliers, clocks })
 }
 
-/// Adds the errors that whole receivers have.
-fn spoil<const D: usize>(values: &mut [f64], network: &Network<D>, options: &SimulateOptions<D>, rng: &mut Pcg64Mcg) {
+/// The clock of each receiver: offset and rate.
+fn clocks<const D: usize>(options: &SimulateOptions<D>, rng: &mut Pcg64Mcg) -> Vec<[f64; 2]> {
+    let recorders = options.receivers.div_ceil(options.channels);
+    let mut deviating = |deviation: f64| -> Vec<f64> {
+        let draw = |_| if deviation > 0.0 { deviation * rng.sample::<f64, _>(StandardNormal) } else { 0.0 };
+        (0..recorders).map(draw).collect()
+    };
+    let (offsets, rates) = (deviating(options.delays), deviating(options.rates));
+    (0..options.receivers).map(|i| i / options.channels).map(|recorder| [offsets[recorder], rates[recorder]]).collect()
+}
+
+/// Adds the error of the first receiver.
+fn spoil<const D: usize>(values: &mut [f64], network: &Network<D>, options: &SimulateOptions<D>) {
     let n = network.transmitters.len();
     for j in 0..n {
         values[j] += match options.fault {
@@ -229,14 +265,6 @@ fn spoil<const D: usize>(values: &mut [f64], network: &Network<D>, options: &Sim
                 distance(moved, network.transmitters[j]) - network.distance(0, j)
             }
         };
-    }
-    if options.delays > 0.0 {
-        for row in values.chunks_exact_mut(n) {
-            let delay = options.delays * rng.sample::<f64, _>(StandardNormal);
-            for value in row.iter_mut() {
-                *value += delay;
-            }
-        }
     }
 }
 
@@ -275,6 +303,14 @@ fn check<const D: usize>(options: &SimulateOptions<D>) -> Result<(), SimulateErr
             (1..=100).contains(&options.candidates),
         ),
         ("the deviation of delays", size, options.delays, (0.0..1e9).contains(&options.delays)),
+        ("the deviation of rates", "from 0 to 0.1", options.rates, (0.0..=0.1).contains(&options.rates)),
+        ("the number of channels", "1 or more", options.channels as f64, options.channels > 0),
+        (
+            "the duration",
+            size,
+            options.duration.unwrap_or_default(),
+            (0.0..1e11).contains(&options.duration.unwrap_or_default()),
+        ),
         ("the first receiver's error", "finite and below 1e9 m", fault, fault.abs() < 1e9),
     ];
     let names = ["the extent in x", "the extent in y", "the extent in z"];
@@ -372,6 +408,27 @@ mod tests {
         let residuals = simulation.network.residuals(&simulation.pseudoranges);
         assert_eq!(residuals.iter().filter(|e| **e > 1e-9).count(), 24);
         assert!(residuals.iter().all(|e| *e > -1e-9));
+    }
+
+    #[test]
+    fn recorders_are_off_and_run_fast_or_slow() {
+        let options = SimulateOptions {
+            delays: 5.0,
+            rates: 2e-5,
+            channels: 3,
+            duration: Some(2e5),
+            missing: 0.2,
+            ..SimulateOptions::<3>::new()
+        };
+        let made = simulate(&options).unwrap();
+        let (measured, network) = (&made.pseudoranges, &made.network);
+        assert_eq!(measured.recorders(), [0, 0, 0, 1, 1, 1, 2, 2]);
+        assert_eq!((measured.recorder_name(5), measured.receiver_names()[5].as_str()), ("rec2", "rec2:3"));
+        assert!(made.clocks[0] == made.clocks[2] && made.clocks[2] != made.clocks[3]);
+        for (i, j, value) in measured.cells().iter() {
+            let ([offset, rate], time) = (made.clocks[i], network.pseudorange(i, j));
+            assert!((value - offset - (1.0 + rate) * time).abs() < 1e-9 && (0.0..2.1e5).contains(&time));
+        }
     }
 
     fn assert_seed_decides<const D: usize>(mut options: SimulateOptions<D>) {

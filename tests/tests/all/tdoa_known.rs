@@ -252,6 +252,12 @@ fn ranges_have_no_offsets() {
     // Standard deviations of the distances are 1 cm, and each receiver has twelve.
     assert!(without < 0.01 && without < with_offsets, "{without} {with_offsets}");
 
+    // A constant that all share costs a little, and is told: none was added.
+    let (but_for_one, found) = error(&["--emissions", "constant"]);
+    assert_eq!(found["emissions"], "constant");
+    let of = |name: &str| found[name][0].as_f64().expect("number");
+    assert!(but_for_one < with_offsets && of("offsets").abs() < 4.0 * of("offset_std"), "{but_for_one} {found}");
+
     let (_, message, status) = calibrate(&[text(&file), "--ranges", "--receiver-delays", "all"]);
     assert!(status == Some(2) && message.contains("cannot be calibrated yet"), "{message}");
     let (_directory, file) = simulated("--receivers 6 --transmitters 12 --noise 0.01");

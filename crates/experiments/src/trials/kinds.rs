@@ -173,7 +173,7 @@ impl Kind {
         };
         let (m, n) = (receivers.len(), transmitters.len());
         let offsets = (0..n).map(|_| 30.0 * (rng.random::<f64>() - 0.5)).collect();
-        let truth = Network { receivers, transmitters, offsets };
+        let truth = Network::new(receivers, transmitters, offsets);
         let mut values: Vec<f64> =
             truth.pseudoranges().into_iter().map(|f| f + noise * rng.sample::<f64, _>(StandardNormal)).collect();
         let with_noise = Pseudoranges::new(m, n, values.clone())?;

@@ -117,11 +117,11 @@ impl Known {
             if (0..events.len()).any(coincide) {
                 continue;
             }
-            let truth = Network {
-                receivers: rows.iter().filter_map(|&i| self.receivers[i]).collect(),
-                transmitters: events.iter().map(|event| event.position).collect(),
-                offsets: events.iter().map(|event| event.offset).collect(),
-            };
+            let truth = Network::new(
+                rows.iter().filter_map(|&i| self.receivers[i]).collect(),
+                events.iter().map(|event| event.position).collect(),
+                events.iter().map(|event| event.offset).collect(),
+            );
             return Some(Part { measured: self.measured.select(&rows, &columns), truth });
         }
         None

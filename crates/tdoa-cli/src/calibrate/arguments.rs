@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tdoa::CalibrateOptions;
 
+use crate::clocks::EmissionArguments;
 use crate::provenance::{named, said};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
@@ -49,10 +50,8 @@ pub(crate) struct Arguments {
     /// moved receivers too), or estimated for all, as where clocks were started apart (all).
     #[arg(long, value_enum, default_value = "none")]
     pub(super) receiver_delays: Delays,
-    /// Takes the measurements as distances, such as two-way ranges or arrival times less known send times:
-    /// transmitters have no offsets.
-    #[arg(long)]
-    pub(super) ranges: bool,
+    #[command(flatten)]
+    pub(super) sending: EmissionArguments,
     /// How measurements are wrong that are wrong by more than noise: too long or too short alike
     /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided). With auto the
     /// latter is tried where no network fits, and said.
@@ -153,7 +152,6 @@ impl Arguments {
             named("sigma", self.sigma),
             named("anchors", path(&self.anchors)),
             named("receiver-delays", Some(said(self.receiver_delays))),
-            named("ranges", switch(self.ranges)),
             named("errors", Some(said(self.errors))),
             named("distances", path(&self.distances)),
             named("estimate-speed", switch(self.estimate_speed)),
@@ -164,6 +162,7 @@ impl Arguments {
             named("max-starts", Some(self.max_starts)),
             named("agreeing", Some(self.agreeing)),
         ];
-        self.input.settings().into_iter().chain(own.into_iter().flatten()).collect()
+        let own = own.into_iter().chain(self.sending.settings()).flatten();
+        self.input.settings().into_iter().chain(own).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! Options of a calibration, and how it ends early.
 
 use crate::calibrate::unfinished::Unfinished;
+use crate::clocks::Emissions;
 use crate::degeneracy::Degeneracy;
-use crate::emissions::Emissions;
 use crate::observations::Node;
 use crate::refine::Cancelled;
 use hc::Monitor;
@@ -212,7 +212,7 @@ impl<const D: usize> CalibrateOptions<D> {
         if self.errors == Errors::OneSided && self.receiver_delays != ReceiverDelays::None {
             return Err(CalibrateError::OneSidedDelays);
         }
-        if self.emissions == Emissions::Known && self.receiver_delays == ReceiverDelays::All {
+        if self.emissions != Emissions::Unknown && self.receiver_delays == ReceiverDelays::All {
             return Err(CalibrateError::RangesWithDelays);
         }
         if let Some(sigma) = self.sigma {

@@ -3,7 +3,7 @@
 use crate::calibrate::input::anchors;
 use crate::calibrate::input::impossible::without_impossible;
 use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
-use crate::calibrate::input::ranges::as_ranges;
+use crate::calibrate::input::ranges::sent;
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
 use crate::calibrate::report::calibration::Calibration;
@@ -14,10 +14,8 @@ use crate::calibrate::search::submaps::overlap;
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
-use crate::emissions::Emissions;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
-use std::borrow::Cow;
 
 /// What `calibrate_with` does, for any number of coordinates.
 pub(crate) fn calibrate_with<const D: usize>(
@@ -46,13 +44,9 @@ impl<'a, const D: usize> Draft<'a, D> {
     ) -> Result<Draft<'a, D>, CalibrateError<D>> {
         options.validate()?;
         anchors::validate(measured, options)?;
-        let (mut table, impossible) = without_impossible(measured);
-        let mut left_out = Vec::from_iter(impossible);
-        if options.emissions == Emissions::Known {
-            let (ranges, negative) = as_ranges(&table)?;
-            table = Cow::Owned(ranges);
-            left_out.extend(negative);
-        }
+        let (table, impossible) = without_impossible(measured);
+        let (table, negative) = sent(table, options.emissions)?;
+        let left_out = impossible.into_iter().chain(negative);
         check(monitor)?;
         let mut usable = usable::<D>(&table)?;
         check(monitor)?;

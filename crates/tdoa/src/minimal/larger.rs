@@ -60,8 +60,7 @@ fn spread_out<const D: usize>(
 ) -> Option<Network<D>> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let f = |i: usize, j: usize| measured.get(i, j).unwrap_or(f64::NAN);
-    let mut network =
-        Network { receivers: vec![[f64::NAN; D]; m], transmitters: vec![[f64::NAN; D]; n], offsets: vec![f64::NAN; n] };
+    let mut network = Network::new(vec![[f64::NAN; D]; m], vec![[f64::NAN; D]; n], vec![f64::NAN; n]);
     for (k, &i) in part.receivers.iter().enumerate() {
         network.receivers[i] = known.receivers[k];
     }

@@ -12,12 +12,14 @@ use faer::Mat;
 use faer::Side;
 
 use super::cancel::{Cancelled, apart, check};
+use super::clock_elimination::EliminatedClocks;
 use super::levels::motions_of_levels;
 use super::motion::Motion;
 use super::normal::Normal;
 use super::refiner::NetworkRefiner;
 use super::rigid::rigid_motion;
-use crate::bordered::{Bordered, Placed};
+use super::way::ways;
+use crate::bordered::Bordered;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -39,7 +41,7 @@ const LONG: usize = 200;
 pub(crate) struct Covariance<const D: usize = 2> {
     /// Per receiver.
     pub(crate) receivers: Vec<[[f64; D]; D]>,
-    /// The covariance of all coordinates of the receivers, Dm x Dm by rows.
+    /// The covariance of all coordinates of the receivers, and of the unknowns of clocks after them, by rows.
     pub(crate) joint: Vec<f64>,
     /// Per transmitter, position (all rows, above the diagonal too) and offset; `None` where its own
     /// measurements do not determine it.
@@ -52,9 +54,9 @@ pub(crate) struct Covariance<const D: usize = 2> {
 impl<const D: usize> Covariance<D> {
     /// Adds `factor` times the product of two motions.
     pub(crate) fn add_product(&mut self, factor: f64, p: &Motion<D>, q: &Motion<D>) {
-        let size = p.receivers.len();
-        for (row, x) in self.joint.chunks_exact_mut(size).zip(&p.receivers) {
-            row.iter_mut().zip(&q.receivers).for_each(|(sum, y)| *sum += factor * x * y);
+        let size = p.reduced.len();
+        for (row, x) in self.joint.chunks_exact_mut(size).zip(&p.reduced) {
+            row.iter_mut().zip(&q.reduced).for_each(|(sum, y)| *sum += factor * x * y);
         }
         for (i, rows) in self.receivers.iter_mut().enumerate() {
             *rows = from_fn(|a| from_fn(|b| self.joint[(D * i + a) * size + D * i + b]));
@@ -75,7 +77,7 @@ impl<const D: usize> Covariance<D> {
 /// The normal equations reduced to the receivers, inverted.
 pub(super) struct Reduced<'a, const D: usize> {
     refiner: NetworkRefiner<'a, D>,
-    /// The inverse for all coordinates of the receivers, Dm x Dm.
+    /// The inverse for all coordinates of the receivers and unknowns of clocks.
     inverse: Mat<f64>,
     /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue, and these.
     modes: Mat<f64>,
@@ -96,12 +98,19 @@ pub(super) fn reduced<'a, const D: usize>(
 ) -> Result<Option<Reduced<'a, D>>, Cancelled> {
     let mut refiner = NetworkRefiner::new(observations, f64::INFINITY, monitor);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
-    let size = D * observations.receivers;
+    let (all, size) = (observations.reduced(), D * observations.receivers);
     let lower = normal.schur();
+    let entry = |a: usize, b: usize| lower[a.min(b) * all + a.max(b)];
     let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / D]).collect();
+    let clocks = match all - size {
+        0 => None,
+        count => match EliminatedClocks::new(count, &free, size, entry) {
+            Some(clocks) => Some(clocks),
+            None => return Ok(None),
+        },
+    };
     let schur = Mat::from_fn(free.len(), free.len(), |a, b| {
-        let (a, b) = (free[a], free[b]);
-        lower[a.min(b) * size + a.max(b)]
+        entry(free[a], free[b]) - clocks.as_ref().map_or(0.0, |clocks| clocks.taken(a, b))
     });
     // Where all receivers are held there is nothing to decompose, which faer does not take.
     let (values, modes) = if free.is_empty() {
@@ -122,7 +131,7 @@ pub(super) fn reduced<'a, const D: usize>(
     for (k, value) in values.iter().enumerate().skip(zero) {
         scaled.col_as_slice_mut(k).iter_mut().for_each(|x| *x *= sigma * sigma / value);
     }
-    let mut inverse = Mat::<f64>::zeros(size, size);
+    let mut inverse = Mat::<f64>::zeros(all, all);
     // A few columns at a time, which stay in the cache.
     let mut columns = vec![0.0; TILE * free.len()];
     for (tile, targets) in free.chunks(TILE).enumerate() {
@@ -139,11 +148,14 @@ pub(super) fn reduced<'a, const D: usize>(
             free.iter().zip(column).for_each(|(&a, x)| inverse[(a, to)] = *x);
         }
     }
+    if let Some(clocks) = clocks {
+        clocks.extend(&mut inverse, &free, size, sigma);
+    }
     Ok(Some(Reduced { refiner, inverse, modes, values, free, zero, rigid }))
 }
 
 impl<const D: usize> Reduced<'_, D> {
-    /// The covariance of all coordinates of the receivers, Dm x Dm by rows.
+    /// The covariance of all coordinates of the receivers, and of the unknowns of clocks after them, by rows.
     pub(super) fn joint(&self) -> Vec<f64> {
         let size = self.inverse.nrows();
         (0..size * size).map(|k| self.inverse[(k / size, k % size)]).collect()
@@ -201,21 +213,22 @@ pub(crate) fn covariance<const D: usize>(
         check(monitor)?;
         transmitters.push(normal.inverse_factor(j).map(|factor| {
             // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with
-            // K_i = C^-1 g w u^T.
+            // K_i = C^-1 g w u^T; unknowns of clocks continue r.
             let gains = normal.gains(observations, j);
-            let rays = normal.rays()[observations.places(j)].iter().zip(observations.of_transmitter(j));
-            let gains: Vec<(Placed<D>, [f64; D], usize)> =
-                gains.into_iter().zip(rays).map(|(gain, ((u, _), o))| (gain, *u, D * o.receiver)).collect();
+            let ways = ways(observations, normal, j);
             let mut sum = Bordered::ZERO;
-            for (a, u, i) in &gains {
-                for (b, v, k) in &gains {
-                    let row = |p: usize| (0..D).map(|q| inverse[(i + p, k + q)] * v[q]).sum::<f64>();
-                    let between = (0..D).map(|p| u[p] * row(p)).sum::<f64>();
-                    sum.add_product(between, a, b);
+            for (a, of_a) in gains.iter().zip(&ways) {
+                for (b, of_b) in gains.iter().zip(&ways) {
+                    let row = |p: usize| (0..D).map(|q| inverse[(of_a.at + p, of_b.at + q)] * of_b.ray[q]).sum::<f64>();
+                    let rays = (0..D).map(|p| of_a.ray[p] * row(p)).sum::<f64>();
+                    sum.add_product(rays + of_a.of_clocks(of_b, |x, y| inverse[(x, y)]), a, b);
                 }
             }
             sum.add(&own_covariance(factor, sigma));
-            sum.corner = observations.of_offset(sum.corner);
+            sum.corner = observations
+                .clocks()
+                .shared_variance(|k| inverse[(D * m + k, D * m + k)])
+                .unwrap_or(observations.of_offset(sum.corner));
             sum
         }));
     }
@@ -270,166 +283,4 @@ fn loose_beside_held<const D: usize>(modes: &faer::MatRef<'_, f64>, zero: usize,
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::network::tests::random;
-    use crate::observations::{Level, Node, Pin};
-    use crate::pseudoranges::Pseudoranges;
-    use crate::simulate::{SimulateOptions, simulate};
-    use faer::linalg::solvers::DenseSolveCore;
-
-    #[test]
-    fn receivers_that_are_all_held_have_no_error() {
-        let simulation = simulate(&SimulateOptions::default()).unwrap();
-        let held = vec![true; simulation.pseudoranges.receivers()];
-        let observations = Observations::<2>::new(&simulation.pseudoranges, |_, _| true).holding(&held);
-        let found = covariance(&observations, &simulation.network, 0.1, &Monitor::default()).unwrap().unwrap();
-        assert!(found.loose.is_empty() && found.receivers.iter().flatten().flatten().all(|&c| c == 0.0));
-        assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c.rows[0][0] > 0.0 && c.rows[1][1] > 0.0)));
-    }
-
-    /// The covariance from the full normal equations with the inner constraint as a border, by dense
-    /// algebra.
-    fn agrees_with_bordered_equations<const D: usize>(m: usize, n: usize) {
-        let network: Network<D> = random(m, n, 5);
-        let mut values = network.pseudoranges();
-        values[3] = f64::NAN;
-        let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
-        let (size, motions) = (D * m + (D + 1) * n, D * (D + 1) / 2);
-        let mut jacobian = Mat::<f64>::zeros(observations.len(), size);
-        for (k, o) in observations.all().iter().enumerate() {
-            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
-            let at = D * m + (D + 1) * o.transmitter;
-            for axis in 0..D {
-                let u = (s[axis] - r[axis]) / network.distance(o.receiver, o.transmitter);
-                (jacobian[(k, D * o.receiver + axis)], jacobian[(k, at + axis)]) = (-u, u);
-            }
-            jacobian[(k, at + D)] = 1.0;
-        }
-        let mut bordered = Mat::<f64>::zeros(size + motions, size + motions);
-        bordered.submatrix_mut(0, 0, size, size).copy_from(jacobian.transpose() * &jacobian);
-        for (i, r) in network.receivers.iter().enumerate() {
-            let mut next = size;
-            for k in 0..D {
-                (bordered[(D * i + k, next)], bordered[(next, D * i + k)]) = (1.0, 1.0);
-                next += 1;
-                for l in 0..k {
-                    (bordered[(D * i + k, next)], bordered[(next, D * i + k)]) = (r[l], r[l]);
-                    (bordered[(D * i + l, next)], bordered[(next, D * i + l)]) = (-r[k], -r[k]);
-                    next += 1;
-                }
-            }
-        }
-        let expected = bordered.partial_piv_lu().inverse();
-        let sigma = 0.02;
-        let found = covariance(&observations, &network, sigma, &Monitor::default()).unwrap().unwrap();
-        assert!(found.loose.is_empty());
-        let close = |found: f64, a: usize, b: usize| {
-            let want = sigma * sigma * expected[(a, b)];
-            assert!((found - want).abs() < 1e-8 * want.abs().max(sigma * sigma), "{a} {b}: {found} {want}");
-        };
-        for a in 0..D * m {
-            for b in 0..D * m {
-                close(found.joint[a * D * m + b], a, b);
-                if a / D == b / D {
-                    close(found.receivers[a / D][a % D][b % D], a, b);
-                }
-            }
-        }
-        for (j, found) in found.transmitters.iter().enumerate() {
-            let (at, found) = (D * m + (D + 1) * j, found.unwrap());
-            for a in 0..D {
-                for b in 0..D {
-                    close(found.rows[a][b], at + a, at + b);
-                }
-                close(found.border[a], at + D, at + a);
-            }
-            close(found.corner, at + D, at + D);
-        }
-    }
-
-    #[test]
-    fn agrees_with_the_bordered_normal_equations() {
-        agrees_with_bordered_equations::<2>(6, 5);
-        agrees_with_bordered_equations::<3>(8, 9);
-    }
-
-    #[test]
-    fn a_receiver_that_may_move_in_space_is_loose() {
-        let network: Network<3> = random(24, 9, 6);
-        let mut values = network.pseudoranges();
-        // Two measurements of the third receiver are left.
-        values[2 * 9 + 2..3 * 9].fill(f64::NAN);
-        let measured = Pseudoranges::new(24, 9, values).unwrap();
-        let loose = |held: &[usize]| {
-            let held: Vec<bool> = (0..24).map(|i| held.contains(&i)).collect();
-            let observations = Observations::new(&measured, |_, _| true).holding(&held);
-            covariance(&observations, &network, 0.1, &Monitor::default()).unwrap().unwrap().loose
-        };
-        // Where nothing is held, others move a little against it.
-        assert!(loose(&[]).contains(&2));
-        assert_eq!(loose(&[0, 1, 3]), [2]);
-        assert!(loose(&[0, 1, 2, 3]).is_empty());
-    }
-
-    /// Against the inverse of the equations of nodes and levels, by dense algebra.
-    #[test]
-    fn levels_are_unknowns() {
-        let (m, n, sigma) = (7, 9, 0.02);
-        let network: Network<3> = random(m, n, 5);
-        let measured = Pseudoranges::new(m, n, network.pseudoranges()).unwrap();
-        let nodes = (0..m).map(Node::Receiver).chain((0..n).map(Node::Transmitter));
-        // All three axes, so that no rigid motion is left.
-        let pin = |node, axis| Pin { node, axis, value: 0.0, precision: [0.7, 0.9, 2.0][axis] };
-        let pins: Vec<Pin> = nodes.flat_map(|node| (0..3).map(move |axis| pin(node, axis))).collect();
-        let share = |of: fn(Node) -> f64| -> Vec<f64> {
-            pins.iter().map(|pin| if pin.axis == 2 { of(pin.node) } else { 0.0 }).collect()
-        };
-        let levels = [
-            (share(|node| f64::from(u8::from(matches!(node, Node::Transmitter(_))))), 0.3),
-            (share(|node| if let Node::Receiver(i) = node { [1.0, -1.0][i % 2] } else { 0.0 }), 0.5),
-        ]
-        .map(|(shares, precision)| Level { shares, precision });
-        let observations = Observations::<3>::new(&measured, |_, _| true).pinned(&pins).levelled(levels.to_vec());
-
-        let at = |node: Node| match node {
-            Node::Receiver(i) => 3 * i,
-            Node::Transmitter(j) => 3 * m + 4 * j,
-        };
-        let nodes = 3 * m + 4 * n;
-        let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-        for o in observations.all() {
-            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
-            let (i, j) = (at(Node::Receiver(o.receiver)), at(Node::Transmitter(o.transmitter)));
-            let u = |axis: usize| (s[axis] - r[axis]) / network.distance(o.receiver, o.transmitter);
-            let ray = (0..3).flat_map(|axis| [(i + axis, -u(axis)), (j + axis, u(axis))]);
-            rows.push(ray.chain([(j + 3, 1.0)]).collect());
-        }
-        for (k, pin) in pins.iter().enumerate() {
-            let own = (at(pin.node) + pin.axis, pin.precision);
-            let of_levels = levels.iter().enumerate().map(|(l, level)| (nodes + l, -pin.precision * level.shares[k]));
-            rows.push([own].into_iter().chain(of_levels).collect());
-        }
-        rows.extend(levels.iter().enumerate().map(|(l, level)| vec![(nodes + l, level.precision)]));
-        let mut jacobian = Mat::<f64>::zeros(rows.len(), nodes + levels.len());
-        for (k, row) in rows.iter().enumerate() {
-            row.iter().for_each(|(column, value)| jacobian[(k, *column)] += value);
-        }
-        let wanted = (jacobian.transpose() * &jacobian).partial_piv_lu().inverse();
-        let found = covariance(&observations, &network, sigma, &Monitor::default()).unwrap().unwrap();
-        let close = |found: f64, a: usize, b: usize| {
-            let wanted = sigma * sigma * wanted[(a, b)];
-            assert!((found - wanted).abs() < 1e-9 * sigma * sigma, "{a} {b}: {found} {wanted}");
-        };
-        for a in 0..3 * m {
-            (0..3 * m).for_each(|b| close(found.joint[a * 3 * m + b], a, b));
-            close(found.receivers[a / 3][a % 3][a % 3], a, a);
-        }
-        for (j, of) in found.transmitters.iter().enumerate() {
-            let (at, of) = (at(Node::Transmitter(j)), of.unwrap());
-            (0..3).for_each(|a| (0..3).for_each(|b| close(of.rows[a][b], at + a, at + b)));
-            (0..3).for_each(|a| close(of.border[a], at + 3, at + a));
-            close(of.corner, at + 3, at + 3);
-        }
-    }
-}
+mod tests;

@@ -38,11 +38,10 @@ impl<'a, const D: usize> Descent<'a, D> {
         }
     }
 
-    /// Begins a descent at a network that is complete and finite. Of distances no transmitter has an offset.
+    /// Begins a descent at a network that is complete and finite. Offsets that are known, or equal, become so.
     pub(super) fn begin(&mut self, network: &mut Network<D>) {
-        if self.observations.are_ranges() {
-            network.offsets.fill(0.0);
-        }
+        self.observations.emissions().settle(&mut network.offsets);
+        self.observations.clocks().begin(network);
         self.trial.clone_from(network);
         self.damping = FIRST;
         self.look(network);
@@ -67,7 +66,7 @@ impl<'a, const D: usize> Descent<'a, D> {
         let mut lower = None;
         while self.damping < HOPELESS {
             if self.normal.solve(self.observations, self.damping, monitor)? {
-                self.normal.step(network, &mut self.trial);
+                self.normal.step(self.observations, network, &mut self.trial);
                 residuals(self.observations, &self.trial, &mut self.trial_residuals);
                 let next = total(&self.trial_residuals);
                 if next < cost {

@@ -3,6 +3,7 @@
 
 use super::cancel::{Cancelled, check};
 use super::reseed::locate_transmitter;
+use crate::clocks::Emissions;
 use crate::loss::Loss;
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
@@ -48,7 +49,7 @@ pub(crate) fn extend<const D: usize>(
     for (_, offset) in part.transmitters.iter_mut().flatten() {
         *offset = observations.of_offset(*offset);
     }
-    let fewest = if observations.are_ranges() { D } else { D + 1 };
+    let fewest = if observations.emissions() == Emissions::Known { D } else { D + 1 };
     let mut sights = Vec::new();
     for spare in [1, 0] {
         loop {
@@ -62,10 +63,8 @@ pub(crate) fn extend<const D: usize>(
     }
     let located: Option<Vec<_>> = part.transmitters.into_iter().collect();
     let receivers: Option<Vec<_>> = part.receivers.into_iter().collect();
-    Ok(located.zip(receivers).map(|(located, receivers)| Network {
-        receivers,
-        transmitters: located.iter().map(|t| t.0).collect(),
-        offsets: located.iter().map(|t| t.1).collect(),
+    Ok(located.zip(receivers).map(|(located, receivers)| {
+        Network::new(receivers, located.iter().map(|t| t.0).collect(), located.iter().map(|t| t.1).collect())
     }))
 }
 
@@ -90,7 +89,7 @@ fn locate_transmitters<const D: usize>(
         sights.clear();
         sights.extend(observations.of_transmitter(j).iter().filter_map(sight));
         if sights.len() >= least
-            && let Some(located) = locate_transmitter(observations, sights, loss)
+            && let Some(located) = locate_transmitter(observations, sights, None, loss)
         {
             part.transmitters[j] = Some((located.position, located.offset));
             found += 1;
@@ -143,11 +142,11 @@ mod tests {
             options.missing = 0.1;
             let simulation = simulate(&options).unwrap();
             let truth = &simulation.network;
-            let small = Network {
-                receivers: truth.receivers[..6].to_vec(),
-                transmitters: truth.transmitters[..3].to_vec(),
-                offsets: truth.offsets[..3].to_vec(),
-            };
+            let small = Network::new(
+                truth.receivers[..6].to_vec(),
+                truth.transmitters[..3].to_vec(),
+                truth.offsets[..3].to_vec(),
+            );
             let mut part = PartialNetwork::unknown(9, 8);
             part.place(&small, &[0, 1, 2, 3, 4, 5], &[0, 1, 2]);
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true);

@@ -401,7 +401,7 @@ mod tests {
             (0..count).map(|_| point(&mut rng)).collect()
         };
         let (receivers, transmitters) = (points(12, receivers), points(30, transmitters));
-        let network = Network { receivers, transmitters, offsets: vec![0.0; 30] };
+        let network = Network::new(receivers, transmitters, vec![0.0; 30]);
         let noisy = network.pseudoranges().into_iter().map(|f| f + SIGMA * rng.sample::<f64, _>(StandardNormal));
         let measured = Pseudoranges::new(12, 30, noisy.collect()).unwrap();
         let observations = Observations::<3>::new(&measured, |_, _| true);
@@ -444,7 +444,7 @@ mod tests {
             };
             let side = |k: usize| if k.is_multiple_of(3) { 1.0 } else { -1.0 };
             let (receivers, transmitters) = (points(12, side, 0.05), points(30, |_| 0.2, 0.3));
-            let network = Network { receivers, transmitters, offsets: vec![0.0; 30] };
+            let network = Network::new(receivers, transmitters, vec![0.0; 30]);
             let noisy = network.pseudoranges().into_iter().map(|f| f + SIGMA * rng.sample::<f64, _>(StandardNormal));
             let measured = Pseudoranges::new(12, 30, noisy.collect()).unwrap();
             let observations = Observations::<3>::new(&measured, |_, _| true);

@@ -6,6 +6,7 @@
 
 use super::motion::Motion;
 use super::normal::Normal;
+use super::way::{Way, ways};
 use crate::bordered::Placed;
 use crate::observations::{Node, Observations};
 use crate::points::dot;
@@ -27,7 +28,7 @@ struct Conditional<const D: usize> {
 
 /// Motions of the nodes whose products with themselves, each by its factor, the levels of the pins add to a covariance.
 /// `normal` are the equations behind that, of measurements with deviation `sigma`, and `joint` is the covariance of all
-/// coordinates of the receivers.
+/// coordinates of the receivers and of clocks.
 pub(super) fn motions_of_levels<const D: usize>(
     observations: &Observations<D>,
     normal: &Normal<D>,
@@ -72,12 +73,12 @@ fn weighted<const D: usize>(observations: &Observations<D>, a: &[f64], b: &[f64]
 
 /// How pins whose values change by these shares pull at the nodes.
 fn pulled<const D: usize>(observations: &Observations<D>, shares: &[f64]) -> Motion<D> {
-    let (m, n) = (observations.receivers, observations.transmitters);
-    let mut pull = Motion { receivers: vec![0.0; D * m], transmitters: vec![([0.0; D], 0.0); n] };
+    let n = observations.transmitters;
+    let mut pull = Motion { reduced: vec![0.0; observations.reduced()], transmitters: vec![([0.0; D], 0.0); n] };
     for (pin, share) in observations.pins().iter().zip(shares) {
         let force = pin.precision.powi(2) * share;
         match pin.node {
-            Node::Receiver(i) => pull.receivers[D * i + pin.axis] += force,
+            Node::Receiver(i) => pull.reduced[D * i + pin.axis] += force,
             Node::Transmitter(j) => pull.transmitters[j].0[pin.axis] += force,
         }
     }
@@ -88,7 +89,7 @@ fn pulled<const D: usize>(observations: &Observations<D>, shares: &[f64]) -> Mot
 struct Equations<'a, const D: usize> {
     observations: &'a Observations<D>,
     normal: &'a Normal<D>,
-    /// The covariance of all coordinates of the receivers, by rows.
+    /// The covariance of the reduced unknowns, by rows.
     joint: &'a [f64],
     sigma: f64,
 }
@@ -97,35 +98,31 @@ impl<const D: usize> Equations<'_, D> {
     /// How nodes follow a pull: the solution of the equations.
     fn followed(&self, pull: &Motion<D>) -> Motion<D> {
         let Equations { observations, normal, sigma, .. } = *self;
-        let size = pull.receivers.len();
-        let mut reduced = pull.receivers.clone();
+        let size = pull.reduced.len();
+        let mut right = pull.reduced.clone();
         let gains: Vec<Vec<Placed<D>>> =
             (0..observations.transmitters).map(|j| normal.gains(observations, j)).collect();
-        // Per measurement of a transmitter: how that follows, the ray, and the place of the receiver's coordinates.
-        let ways = |j: usize| {
-            let rays = normal.rays()[observations.places(j)].iter().zip(observations.of_transmitter(j));
-            gains[j].iter().zip(rays).map(|(gain, ((u, _), o))| (*gain, *u, D * o.receiver))
-        };
+        let ways: Vec<Vec<Way<'_, D>>> =
+            (0..observations.transmitters).map(|j| ways(observations, normal, j)).collect();
         for (j, pull) in pull.transmitters.iter().enumerate() {
-            for (gain, u, at) in ways(j) {
-                let along = dot(gain.0, pull.0) + gain.1 * pull.1;
-                (0..D).for_each(|k| reduced[at + k] += along * u[k]);
+            for (gain, way) in gains[j].iter().zip(&ways[j]) {
+                way.spread(dot(gain.0, pull.0) + gain.1 * pull.1, &mut right);
             }
         }
-        let row = |k: usize| self.joint[k * size..(k + 1) * size].iter().zip(&reduced);
+        let row = |k: usize| self.joint[k * size..(k + 1) * size].iter().zip(&right);
         let follow = |k: usize| row(k).map(|(a, b)| a * b).sum::<f64>() / (sigma * sigma);
-        let receivers: Vec<f64> = (0..size).map(follow).collect();
+        let reduced: Vec<f64> = (0..size).map(follow).collect();
         let follow = |(j, pull): (usize, &Placed<D>)| {
             let Some(factor) = normal.inverse_factor(j) else { return ([0.0; D], 0.0) };
             let mut sum = factor.invert(*pull);
             sum.1 = observations.of_offset(sum.1);
-            for (gain, u, at) in ways(j) {
-                let along: f64 = (0..D).map(|k| u[k] * receivers[at + k]).sum();
+            for (gain, way) in gains[j].iter().zip(&ways[j]) {
+                let along = way.along(&reduced);
                 (0..D).for_each(|k| sum.0[k] += along * gain.0[k]);
                 sum.1 += along * gain.1;
             }
             sum
         };
-        Motion { transmitters: pull.transmitters.iter().enumerate().map(follow).collect(), receivers }
+        Motion { transmitters: pull.transmitters.iter().enumerate().map(follow).collect(), reduced }
     }
 }

@@ -10,6 +10,8 @@
 //! and nodes that are stuck are multilaterated anew from all others (`reseed`).
 
 mod cancel;
+mod clock_block;
+mod clock_elimination;
 mod covariance;
 mod descent;
 mod eliminate;
@@ -27,6 +29,7 @@ mod rigid;
 mod sampled;
 mod solver;
 mod systematic;
+mod way;
 mod weighing;
 
 pub(crate) use cancel::{Cancelled, check};

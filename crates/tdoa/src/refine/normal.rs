@@ -1,11 +1,12 @@
-//! The damped normal equations of all nodes, reduced to the receivers by the Schur complement over
+//! The damped normal equations of all nodes and clocks, reduced to receivers and clocks by the Schur complement over
 //! the transmitters.
 //!
 //! The residual is e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g =
 //! (u, 1), its derivatives are u by the receiver and -g by transmitter and offset. Each transmitter
 //! j has a 3x3 block (4x4 in space) C_j = sum w g g^T and couples to its receivers by -w u g^T. Eliminating it
 //! therefore subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T,
-//! this is the product B^T B of the columns w_i (L^-1 g_i) u_i^T.
+//! this is the product B^T B of the columns w_i (L^-1 g_i) u_i^T. Unknowns of clocks follow the coordinates of the
+//! receivers; the derivative of a residual by them continues u.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -17,6 +18,7 @@ use hc::poly::simd::Isa;
 use std::array::from_fn;
 
 use super::cancel::{Cancelled, apart, check};
+use super::clock_block::ClockBlock;
 use super::eliminate::Eliminate;
 use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
@@ -37,6 +39,7 @@ const LOOK: usize = 64;
 /// Buffers for one problem size; nothing is allocated after `new`, but for very many receivers.
 pub(crate) struct Normal<const D: usize = 2> {
     receivers: usize,
+    clocks: ClockBlock,
     /// Per observation: unit vector and weight.
     rays: Vec<([f64; D], f64)>,
     /// Per receiver: the lower triangle of its block by rows, and its gradient.
@@ -46,9 +49,10 @@ pub(crate) struct Normal<const D: usize = 2> {
     /// Inverse Cholesky factors of the damped transmitter blocks.
     inverse_factors: Vec<Option<Bordered<D>>>,
     schur: Vec<f64>,
-    receiver_steps: Vec<f64>,
+    /// Of the coordinates of receivers, then of the unknowns of clocks.
+    reduced_steps: Vec<f64>,
     transmitter_steps: Vec<Placed<D>>,
-    /// D + 1 rows: what a transmitter couples to the receivers, in the frame in which its block is
+    /// D + 1 rows: what a transmitter couples to receivers and clocks, in the frame in which its block is
     /// the identity.
     coupling: Vec<f64>,
     /// What a transmitter that few receivers hear couples to them: coordinates in ascending order, and their
@@ -61,18 +65,20 @@ pub(crate) struct Normal<const D: usize = 2> {
 impl<const D: usize> Normal<D> {
     pub(crate) fn new(observations: &Observations<D>) -> Self {
         let (m, n) = (observations.receivers, observations.transmitters);
-        let factor = llt::factor::cholesky_in_place_scratch::<f64>(D * m, Par::Seq, default());
-        let solve = llt::solve::solve_in_place_scratch::<f64>(D * m, 1, Par::Seq);
+        let size = observations.reduced();
+        let factor = llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, default());
+        let solve = llt::solve::solve_in_place_scratch::<f64>(size, 1, Par::Seq);
         Normal {
             receivers: m,
+            clocks: ClockBlock::new(observations),
             rays: vec![([0.0; D], 0.0); observations.len()],
             receiver_blocks: vec![([[0.0; D]; D], [0.0; D]); m],
             transmitter_blocks: vec![(Bordered::ZERO, ([0.0; D], 0.0)); n],
             inverse_factors: vec![None; n],
-            schur: vec![0.0; D * D * m * m],
-            receiver_steps: vec![0.0; D * m],
+            schur: vec![0.0; size * size],
+            reduced_steps: vec![0.0; size],
             transmitter_steps: vec![([0.0; D], 0.0); n],
-            coupling: vec![0.0; (D + 1) * D * m],
+            coupling: vec![0.0; (D + 1) * size],
             few: Vec::with_capacity(D * m / SPARSE),
             isa: Isa::detect(),
             scratch: MemBuffer::new(factor.or(solve)),
@@ -105,6 +111,8 @@ impl<const D: usize> Normal<D> {
     ) {
         self.receiver_blocks.fill(([[0.0; D]; D], [0.0; D]));
         self.transmitter_blocks.fill((Bordered::ZERO, ([0.0; D], 0.0)));
+        self.clocks.clear();
+        let clock_terms = observations.clock_terms();
         for (k, ((o, ray), &e)) in observations.all().iter().zip(&mut self.rays).zip(residuals).enumerate() {
             let between = minus(network.transmitters[o.transmitter], network.receivers[o.receiver]);
             let d = dot(between, between).sqrt();
@@ -113,6 +121,7 @@ impl<const D: usize> Normal<D> {
             let we = weight * o.precision;
             let w = we * o.precision;
             *ray = (u, w);
+            self.clocks.add(clock_terms.of(k), D * o.receiver, &u, w, we * e);
             let (rows, gradient) = &mut self.receiver_blocks[o.receiver];
             let (block, placed) = &mut self.transmitter_blocks[o.transmitter];
             for a in 0..D {
@@ -165,17 +174,17 @@ impl<const D: usize> Normal<D> {
         if !self.factor(monitor)? {
             return Ok(false);
         }
-        let size = D * self.receivers;
+        let size = self.reduced_steps.len();
         let schur = MatRef::from_column_major_slice(&self.schur, size, size);
-        let rhs = MatMut::from_column_major_slice_mut(&mut self.receiver_steps, size, 1);
+        let rhs = MatMut::from_column_major_slice_mut(&mut self.reduced_steps, size, 1);
         llt::solve::solve_in_place(schur, rhs, Par::Seq, MemStack::new(&mut self.scratch));
         self.substitute_back(observations);
-        Ok(self.receiver_steps.iter().all(|x| x.is_finite()))
+        Ok(self.reduced_steps.iter().all(|x| x.is_finite()))
     }
 
     /// Replaces the Schur complement by its Cholesky factor; false if there is none.
     fn factor(&mut self, monitor: &Monitor) -> Result<bool, Cancelled> {
-        let size = D * self.receivers;
+        let size = self.reduced_steps.len();
         if size < LONG {
             return Ok(cholesky(&mut self.schur, size, &mut self.scratch));
         }
@@ -203,10 +212,10 @@ impl<const D: usize> Normal<D> {
         if !self.solve(observations, damping, monitor)? {
             return Ok(None);
         }
-        let size = D * self.receivers;
-        let receivers: f64 = (0..size).map(|k| self.schur[k * size + k].ln()).sum();
+        let size = self.reduced_steps.len();
+        let reduced: f64 = (0..size).map(|k| self.schur[k * size + k].ln()).sum();
         let transmitters: f64 = self.inverse_factors.iter().flatten().map(|inverse| inverse.determinant().ln()).sum();
-        Ok(Some(2.0 * (receivers - transmitters)))
+        Ok(Some(2.0 * (reduced - transmitters)))
     }
 
     /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose
@@ -217,7 +226,7 @@ impl<const D: usize> Normal<D> {
         damping: f64,
         monitor: &Monitor,
     ) -> Result<(), Cancelled> {
-        let size = D * self.receivers;
+        let size = self.reduced_steps.len();
         let grow = 1.0 + damping;
         // A node without usable measurements keeps a regular block and does not move.
         let trace = |rows: &[[f64; D]; D]| (0..D).map(|k| rows[k][k]).sum::<f64>();
@@ -230,34 +239,37 @@ impl<const D: usize> Normal<D> {
                     self.schur[(at + b) * size + at + a] = rows[a][b];
                 }
                 self.schur[(at + a) * size + at + a] = rows[a][a] * grow + floor * damping;
-                self.receiver_steps[at + a] = gradient[a];
+                self.reduced_steps[at + a] = gradient[a];
             }
         }
-        let mut first = 0;
+        self.clocks.write(&mut self.schur, &mut self.reduced_steps, grow, floor * damping);
+        let (mut first, terms) = (0, observations.clock_terms());
         for j in 0..observations.transmitters {
             let column = observations.of_transmitter(j);
             if j % LOOK == 0 || column.len() >= LOOK {
                 check(monitor)?;
             }
-            let rays = &self.rays[first..first + column.len()];
-            first += column.len();
+            let places = first..first + column.len();
+            first = places.end;
+            let rays = &self.rays[places.clone()];
             let (block, gradient) = &self.transmitter_blocks[j];
             self.inverse_factors[j] = block.inverse_cholesky(grow, floor * damping);
             let Some(inverse) = self.inverse_factors[j] else {
-                for (o, (u, w)) in column.iter().zip(rays) {
+                for ((k, o), (u, w)) in places.zip(column).zip(rays) {
                     let at = D * o.receiver;
                     for a in 0..D {
                         for b in 0..=a {
                             self.schur[(at + b) * size + at + a] -= w * u[b] * u[a];
                         }
                     }
+                    self.clocks.take_off(&mut self.schur, terms.of(k), at, u, *w);
                 }
                 continue;
             };
             let z = inverse.forward(*gradient);
             let coupled =
                 |(u, w): &([f64; D], f64)| (inverse.forward((u.map(|u| w * u), observations.of_offset(*w))), *u);
-            if SPARSE * column.len() <= self.receivers {
+            if SPARSE * column.len() <= self.receivers && self.clocks.is_empty() {
                 // Few receivers: their blocks alone.
                 self.few.clear();
                 for (o, ray) in column.iter().zip(rays) {
@@ -279,7 +291,7 @@ impl<const D: usize> Normal<D> {
                 }
                 for (a, &(column, (p, last))) in self.few.iter().enumerate() {
                     for (g, z) in p.into_iter().chain([last]).zip(z.0.into_iter().chain([z.1])) {
-                        self.receiver_steps[column] += g * z;
+                        self.reduced_steps[column] += g * z;
                     }
                     for &(row, (x, end)) in &self.few[a..] {
                         self.schur[column * size + row] -= dot(p, x) + last * end;
@@ -289,16 +301,17 @@ impl<const D: usize> Normal<D> {
             }
             let rows = &mut self.coupling;
             rows.fill(0.0);
-            for (o, ray) in column.iter().zip(rays) {
+            for ((k, o), ray) in places.zip(column).zip(rays) {
                 let ((y, last), u) = coupled(ray);
                 let at = D * o.receiver;
                 for (row, y) in rows.chunks_exact_mut(size).zip(y.into_iter().chain([last])) {
                     // Candidates of one cell add up.
                     row[at..at + D].iter_mut().zip(u).for_each(|(entry, u)| *entry += y * u);
+                    terms.of(k).iter().for_each(|&(at, x)| row[at] += y * x);
                 }
             }
             for (row, z) in rows.chunks_exact(size).zip(z.0.into_iter().chain([z.1])) {
-                for (g, b) in self.receiver_steps.iter_mut().zip(row) {
+                for (g, b) in self.reduced_steps.iter_mut().zip(row) {
                     *g += b * z;
                 }
             }
@@ -310,25 +323,26 @@ impl<const D: usize> Normal<D> {
 
     /// Makes the equations of held receivers say that they do not move.
     fn hold(&mut self, held: &[bool]) {
-        let size = D * self.receivers;
-        for at in (0..size).filter(|&k| held[k / D]) {
+        let size = self.reduced_steps.len();
+        for at in (0..D * self.receivers).filter(|&k| held[k / D]) {
             for column in 0..at {
                 self.schur[column * size + at] = 0.0;
             }
             self.schur[at * size + at + 1..(at + 1) * size].fill(0.0);
             self.schur[at * size + at] = 1.0;
-            self.receiver_steps[at] = 0.0;
+            self.reduced_steps[at] = 0.0;
         }
     }
 
     fn substitute_back(&mut self, observations: &Observations<D>) {
-        let mut first = 0;
+        let (mut first, terms) = (0, observations.clock_terms());
         for j in 0..observations.transmitters {
             let column = observations.of_transmitter(j);
             let (mut rhs, mut last) = self.transmitter_blocks[j].1;
-            for (o, (u, w)) in column.iter().zip(&self.rays[first..]) {
+            for ((k, o), (u, w)) in (first..).zip(column).zip(&self.rays[first..]) {
                 let at = D * o.receiver;
-                let along = w * (0..D).map(|k| u[k] * self.receiver_steps[at + k]).sum::<f64>();
+                let mut along = w * (0..D).map(|k| u[k] * self.reduced_steps[at + k]).sum::<f64>();
+                terms.of(k).iter().for_each(|&(at, x)| along += w * x * self.reduced_steps[at]);
                 rhs = from_fn(|k| rhs[k] + along * u[k]);
                 last += observations.of_offset(along);
             }
@@ -341,18 +355,20 @@ impl<const D: usize> Normal<D> {
     }
 
     /// `target` = `network` + step.
-    pub(crate) fn step(&self, network: &Network<D>, target: &mut Network<D>) {
+    pub(crate) fn step(&self, observations: &Observations<D>, network: &Network<D>, target: &mut Network<D>) {
         for (i, (to, from)) in target.receivers.iter_mut().zip(&network.receivers).enumerate() {
-            *to = from_fn(|k| from[k] + self.receiver_steps[D * i + k]);
+            *to = from_fn(|k| from[k] + self.reduced_steps[D * i + k]);
         }
         for (j, (position, offset)) in self.transmitter_steps.iter().enumerate() {
             let from = network.transmitters[j];
             target.transmitters[j] = from_fn(|k| from[k] + position[k]);
             target.offsets[j] = network.offsets[j] + offset;
         }
+        observations.clocks().add(target, &self.reduced_steps[D * self.receivers..], 1.0);
     }
 
-    /// The Schur complement of the last `reduce`, lower triangle, column-major, Dm x Dm.
+    /// The Schur complement of the last `reduce`, lower triangle, column-major: as many rows as there are reduced
+    /// unknowns.
     pub(crate) fn schur(&self) -> &[f64] {
         &self.schur
     }
@@ -363,8 +379,8 @@ impl<const D: usize> Normal<D> {
         self.inverse_factors[j].as_ref()
     }
 
-    /// How a transmitter and its offset follow a way of a receiver along each of its rays, of the last `reduce`; none
-    /// where its block is singular.
+    /// How a transmitter and its offset follow a way of a receiver along each of its rays, or what a clock adds to a residual,
+    /// of the last `reduce`; none where its block is singular.
     pub(crate) fn gains(&self, observations: &Observations<D>, j: usize) -> Vec<Placed<D>> {
         let Some(factor) = self.inverse_factor(j) else { return Vec::new() };
         let rays = &self.rays[observations.places(j)];

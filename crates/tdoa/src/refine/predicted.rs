@@ -2,6 +2,7 @@
 
 use super::cancel::{Cancelled, check};
 use super::covariance::reduced;
+use super::way::ways;
 use crate::bordered::Placed;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -19,7 +20,7 @@ pub(crate) fn predicted_variances<const D: usize>(
 ) -> Result<Option<Vec<Option<f64>>>, Cancelled> {
     let Some(reduced) = reduced(observations, network, 1.0, monitor)? else { return Ok(None) };
     let (normal, joint) = (reduced.normal(), reduced.joint());
-    let size = D * observations.receivers;
+    let size = observations.reduced();
     let mut all = Vec::with_capacity(observations.len());
     for j in 0..observations.transmitters {
         check(monitor)?;
@@ -31,11 +32,12 @@ pub(crate) fn predicted_variances<const D: usize>(
         };
         let g = |k: usize| (rays[k].0, observations.of_offset(1.0));
         // A motion of the receivers by dr moves the transmitter by sum_l a_l u_l^T dr_l.
-        let gains = normal.gains(observations, j);
+        let (gains, ways) = (normal.gains(observations, j), ways(observations, normal, j));
         let between = |k: usize, l: usize| -> f64 {
-            let (a, b) = (D * column[k].receiver, D * column[l].receiver);
-            let entry = |x: usize, y: usize| rays[k].0[x] * joint[(a + x) * size + b + y] * rays[l].0[y];
-            (0..D).flat_map(|x| (0..D).map(move |y| (x, y))).map(|(x, y)| entry(x, y)).sum()
+            let (p, q) = (&ways[k], &ways[l]);
+            let entry = |x: usize, y: usize| p.ray[x] * joint[(p.at + x) * size + q.at + y] * q.ray[y];
+            let rays: f64 = (0..D).flat_map(|x| (0..D).map(move |y| (x, y))).map(|(x, y)| entry(x, y)).sum();
+            rays + p.of_clocks(q, |a, b| joint[a * size + b])
         };
         // Covariances of the ways along the rays with the transmitter's motion.
         let mixed = |k: usize| -> Placed<D> {
@@ -60,19 +62,13 @@ fn dot<const D: usize>(a: Placed<D>, b: Placed<D>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::predicted_variances;
-    use crate::network::Network;
-    use crate::network::tests::random;
+    use crate::clocks::tests::{Model, models};
     use crate::observations::Observations;
-    use crate::pseudoranges::Pseudoranges;
     use crate::refine::Projection;
     use hc::Monitor;
 
-    fn is_taken<const D: usize>(m: usize, n: usize, are_ranges: bool) {
-        let network: Network<D> = random(m, n, 2);
-        let mut values = network.pseudoranges();
-        [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
-        let measured = Pseudoranges::new(m, n, values).unwrap();
-        let measured = if are_ranges { measured.into_ranges() } else { measured };
+    fn is_taken<const D: usize>(m: usize, n: usize, model: Model) {
+        let (network, measured) = model.network::<D>(m, n);
         let observations = Observations::new(&measured, |_, _| true);
         let projection = Projection::new(&observations, &network, &Monitor::default()).unwrap().unwrap();
         let variances = predicted_variances(&observations, &network, &Monitor::default()).unwrap().unwrap();
@@ -86,9 +82,9 @@ mod tests {
 
     #[test]
     fn the_network_takes_the_variance_of_a_prediction_of_a_change_of_one_measurement() {
-        for are_ranges in [false, true] {
-            is_taken::<2>(6, 7, are_ranges);
-            is_taken::<3>(8, 9, are_ranges);
+        for model in models() {
+            is_taken::<2>(8, 9, model);
+            is_taken::<3>(10, 11, model);
         }
     }
 }

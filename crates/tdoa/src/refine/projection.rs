@@ -4,6 +4,7 @@
 use super::cancel::{Cancelled, check};
 use super::motion::Motion;
 use super::solver::ReceiverEquations;
+use super::way::Way;
 use crate::bordered::{Bordered, Placed};
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
@@ -17,13 +18,13 @@ use std::array::from_fn;
 /// deviation 1, ready for least squares.
 pub(crate) struct Projection<'a, const D: usize = 2> {
     observations: &'a Observations<D>,
-    /// Unit vectors from receiver to transmitter.
-    rays: Vec<[f64; D]>,
+    /// How each measurement depends on receivers and clocks.
+    ways: Vec<Way<'a, D>>,
     /// Inverse Cholesky factors of the transmitters' normal equations; `None` where those are
     /// singular.
     factors: Vec<Option<Bordered<D>>>,
-    /// The receivers' normal equations with the transmitters eliminated.
-    receivers: ReceiverEquations,
+    /// The normal equations of receivers and clocks, with the transmitters eliminated.
+    reduced: ReceiverEquations,
 }
 
 impl<'a, const D: usize> Projection<'a, D> {
@@ -34,11 +35,11 @@ impl<'a, const D: usize> Projection<'a, D> {
         monitor: &Monitor,
     ) -> Result<Option<Self>, Cancelled> {
         let solver = ReceiverEquations::new(observations, network, monitor, |normal| {
-            let rays = normal.rays().iter().map(|(u, _)| *u).collect();
+            let ways = normal.rays().iter().enumerate().map(|(k, (u, _))| Way::new(observations, *u, k)).collect();
             let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
-            (rays, factors)
+            (ways, factors)
         })?;
-        Ok(solver.map(|(receivers, (rays, factors))| Projection { observations, rays, factors, receivers }))
+        Ok(solver.map(|(reduced, (ways, factors))| Projection { observations, ways, factors, reduced }))
     }
 
     /// The part of `values`, one for each measurement in units of its deviation, that no motion of
@@ -47,9 +48,10 @@ impl<'a, const D: usize> Projection<'a, D> {
     pub(crate) fn off(&self, values: &[f64]) -> (Vec<f64>, Motion<D>) {
         let motion = self.solve(values);
         let mut rest = Vec::with_capacity(values.len());
-        for ((o, u), value) in self.observations.all().iter().zip(&self.rays).zip(values) {
-            let (at, (t, last)) = (D * o.receiver, motion.transmitters[o.transmitter]);
-            let along = (0..D).map(|k| u[k] * (motion.receivers[at + k] - t[k])).sum::<f64>() - last;
+        for ((o, way), value) in self.observations.all().iter().zip(&self.ways).zip(values) {
+            let ((t, last), u, moved) = (motion.transmitters[o.transmitter], way.ray, &motion.reduced[way.at..]);
+            let along = (0..D).map(|k| u[k] * (moved[k] - t[k])).sum::<f64>() - last;
+            let along = way.terms.iter().fold(along, |sum, &(at, x)| sum + x * motion.reduced[at]);
             let absorbed = if self.factors[o.transmitter].is_some() { o.precision * along } else { *value };
             rest.push(value - absorbed);
         }
@@ -58,16 +60,13 @@ impl<'a, const D: usize> Projection<'a, D> {
 
     /// The motion whose change of the residuals is nearest to `values`.
     fn solve(&self, values: &[f64]) -> Motion<D> {
-        let size = D * self.observations.receivers;
-        let mut right = vec![0.0; size];
+        let mut right = vec![0.0; self.observations.reduced()];
         let mut sums = vec![([0.0; D], 0.0); self.observations.transmitters];
-        for (k, o, u) in self.linked() {
+        for (k, o, way) in self.linked() {
             let v = o.precision * values[k];
             let (sum, last) = &mut sums[o.transmitter];
-            for axis in 0..D {
-                right[D * o.receiver + axis] += v * u[axis];
-                sum[axis] -= v * u[axis];
-            }
+            way.spread(v, &mut right);
+            (0..D).for_each(|axis| sum[axis] -= v * way.ray[axis]);
             *last -= self.observations.of_offset(v);
         }
         let solved = |sums: &[Placed<D>]| -> Vec<Placed<D>> {
@@ -75,36 +74,32 @@ impl<'a, const D: usize> Projection<'a, D> {
             each.map(|(factor, sum)| factor.map_or(([0.0; D], 0.0), |f| f.invert(*sum))).collect()
         };
         let alone = solved(&sums);
-        for (_, o, u) in self.linked() {
+        for (_, o, way) in self.linked() {
             let (t, last) = alone[o.transmitter];
-            let along = o.precision * o.precision * (points::dot(*u, t) + last);
-            for axis in 0..D {
-                right[D * o.receiver + axis] += along * u[axis];
-            }
+            way.spread(o.precision * o.precision * (points::dot(way.ray, t) + last), &mut right);
         }
         for (i, _) in self.observations.held().iter().enumerate().filter(|(_, held)| **held) {
             right[D * i..D * i + D].fill(0.0);
         }
-        let receivers = self.receivers.solve(&right);
-        for (_, o, u) in self.linked() {
-            let moved = from_fn(|axis| receivers[D * o.receiver + axis]);
-            let along = o.precision * o.precision * points::dot(*u, moved);
+        let reduced = self.reduced.solve(&right);
+        for (_, o, way) in self.linked() {
+            let along = o.precision * o.precision * way.along(&reduced);
             let (sum, last) = &mut sums[o.transmitter];
-            *sum = from_fn(|axis| sum[axis] + along * u[axis]);
+            *sum = from_fn(|axis| sum[axis] + along * way.ray[axis]);
             *last += self.observations.of_offset(along);
         }
-        Motion { transmitters: solved(&sums), receivers }
+        Motion { transmitters: solved(&sums), reduced }
     }
 
-    /// Measurements of transmitters that are tied down, with their place and ray.
-    fn linked(&self) -> impl Iterator<Item = (usize, &Observation, &[f64; D])> {
-        let all = self.observations.all().iter().zip(&self.rays).enumerate();
-        all.filter(|(_, (o, _))| self.factors[o.transmitter].is_some()).map(|(k, (o, u))| (k, o, u))
+    /// Measurements of transmitters that are tied down, with their place.
+    fn linked(&self) -> impl Iterator<Item = (usize, &Observation, &Way<'a, D>)> {
+        let all = self.observations.all().iter().zip(&self.ways).enumerate();
+        all.filter(|(_, (o, _))| self.factors[o.transmitter].is_some()).map(|(k, (o, way))| (k, o, way))
     }
 
-    /// Unit vectors from receiver to transmitter, in the order of the measurements.
-    pub(crate) fn rays(&self) -> &[[f64; D]] {
-        &self.rays
+    /// The unit vector from receiver to transmitter of a measurement, by its place among all.
+    pub(crate) fn ray(&self, k: usize) -> [f64; D] {
+        self.ways[k].ray
     }
 }
 
@@ -133,28 +128,26 @@ pub(crate) fn gram<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::Projection;
-    use crate::network::Network;
-    use crate::network::tests::random;
+    use crate::clocks::Emissions;
+    use crate::clocks::tests::{Model, models};
     use crate::observations::Observations;
-    use crate::pseudoranges::Pseudoranges;
     use hc::Monitor;
 
-    fn is_absorbed<const D: usize>(m: usize, n: usize, of_offset: f64) {
-        let mut network: Network<D> = random(m, n, 2);
-        network.offsets.iter_mut().for_each(|offset| *offset *= of_offset);
+    fn is_absorbed<const D: usize>(m: usize, n: usize, model: Model) {
+        let (network, measured) = model.network::<D>(m, n);
         let network = &network;
-        let mut values = network.pseudoranges();
-        [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
-        let measured = Pseudoranges::new(m, n, values).unwrap();
-        let measured = if of_offset == 0.0 { measured.into_ranges() } else { measured };
         let observations = Observations::new(&measured, |_, _| true);
         let projection = Projection::new(&observations, network, &Monitor::default()).unwrap().unwrap();
-        // A small motion of one node of each kind, by differences.
+        // A small motion of one node of each kind, and of clocks, by differences.
         let step = 1e-6;
         let mut moved = network.clone();
         moved.receivers[2][0] += step;
         moved.transmitters[4][D - 1] -= step;
-        moved.offsets[1] += of_offset * step;
+        if model.emissions == Emissions::Unknown {
+            moved.offsets[1] += step;
+        }
+        let changes: Vec<f64> = (0..observations.clocks().count()).map(|k| step * (k as f64).cos()).collect();
+        observations.clocks().add(&mut moved, &changes, 1.0);
         let change: Vec<f64> =
             observations.all().iter().map(|o| (o.residual(&moved) - o.residual(network)) / step).collect();
         let (rest, _) = projection.off(&change);
@@ -176,13 +169,9 @@ mod tests {
 
     #[test]
     fn what_a_motion_makes_is_absorbed_and_nothing_else() {
-        is_absorbed::<2>(6, 7, 1.0);
-        is_absorbed::<3>(8, 9, 1.0);
-    }
-
-    #[test]
-    fn of_distances_no_offset_absorbs_anything() {
-        is_absorbed::<2>(6, 7, 0.0);
-        is_absorbed::<3>(8, 9, 0.0);
+        for model in models() {
+            is_absorbed::<2>(8, 9, model);
+            is_absorbed::<3>(10, 11, model);
+        }
     }
 }

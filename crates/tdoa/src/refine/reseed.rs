@@ -23,7 +23,7 @@ pub(crate) fn place_transmitters<const D: usize>(
     let mut kept = 0;
     for j in 0..observations.transmitters {
         sights_of_transmitter(observations, network, j, &mut sights);
-        match locate_transmitter(observations, &sights, loss) {
+        match locate_transmitter(observations, &sights, None, loss) {
             Some(found) => {
                 network.transmitters[j] = found.position;
                 network.offsets[j] = found.offset;
@@ -34,17 +34,25 @@ pub(crate) fn place_transmitters<const D: usize>(
     kept
 }
 
-/// A transmitter by what receivers measured of it: one without an offset, as a receiver is located.
+/// A transmitter by what receivers measured of it. One that shares its offset with all others has this one, if it is
+/// given: it is located as a receiver is.
 pub(super) fn locate_transmitter<const D: usize>(
     observations: &Observations<D>,
     sights: &[Sight<D>],
+    offset: Option<f64>,
     loss: &Loss,
 ) -> Option<Located<D>> {
-    if observations.are_ranges() {
-        multilateration::receiver(sights, loss)
-    } else {
-        multilateration::transmitter(sights, loss)
+    match observations.emissions().shared(offset) {
+        None => multilateration::transmitter(sights, loss),
+        Some(offset) => {
+            multilateration::receiver(&without(offset, sights), loss).map(|found| Located { offset, ..found })
+        }
     }
+}
+
+/// What is left of sights without an offset.
+fn without<const D: usize>(offset: f64, sights: &[Sight<D>]) -> Vec<Sight<D>> {
+    sights.iter().map(|sight| Sight { length: sight.length - offset, ..*sight }).collect()
 }
 
 /// Locates every transmitter, then every receiver that is not held, from all other nodes and moves
@@ -61,7 +69,8 @@ pub(crate) fn reseed<const D: usize>(
         sights_of_transmitter(observations, network, j, &mut sights);
         check(monitor)?;
         let now = multilateration::cost(&sights, network.transmitters[j], network.offsets[j], loss);
-        if let Some(found) = better(locate_transmitter(observations, &sights, loss), now) {
+        let offset = Some(network.offsets[j]);
+        if let Some(found) = better(locate_transmitter(observations, &sights, offset, loss), now) {
             network.transmitters[j] = found.position;
             network.offsets[j] = found.offset;
             moved += 1;
@@ -88,10 +97,12 @@ pub(crate) fn places_of_transmitter<const D: usize>(
 ) -> Vec<Located<D>> {
     let mut sights = Vec::new();
     sights_of_transmitter(observations, network, j, &mut sights);
-    if observations.are_ranges() {
-        multilateration::receivers(&sights, loss)
-    } else {
-        multilateration::transmitters(&sights, loss)
+    match observations.emissions().shared(Some(network.offsets[j])) {
+        None => multilateration::transmitters(&sights, loss),
+        Some(offset) => {
+            let found = multilateration::receivers(&without(offset, &sights), loss);
+            found.into_iter().map(|place| Located { offset, ..place }).collect()
+        }
     }
 }
 
@@ -117,8 +128,11 @@ fn sights_of_transmitter<const D: usize>(
     j: usize,
     sights: &mut Vec<Sight<D>>,
 ) {
-    let sight =
-        |o: &Observation| Sight { position: network.receivers[o.receiver], length: o.value, precision: o.precision };
+    let sight = |o: &Observation| Sight {
+        position: network.receivers[o.receiver],
+        length: o.synchronised(network),
+        precision: o.precision,
+    };
     sights.clear();
     sights.extend(observations.of_transmitter(j).iter().map(sight));
 }
@@ -131,7 +145,7 @@ fn sights_of_receiver<const D: usize>(
 ) {
     let sight = |o: &Observation| Sight {
         position: network.transmitters[o.transmitter],
-        length: o.value - network.offsets[o.transmitter],
+        length: o.length(network),
         precision: o.precision,
     };
     sights.clear();

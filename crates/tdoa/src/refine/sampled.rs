@@ -57,7 +57,8 @@ pub(crate) fn sampled_covariance<const D: usize>(
     monitor: &Monitor,
 ) -> Result<Option<Covariance<D>>, Cancelled> {
     let size = D * observations.receivers;
-    if size > LARGE {
+    // Samples are of receivers alone.
+    if size > LARGE || observations.clocks().count() > 0 {
         return Ok(None);
     }
     let Some(reduced) = reduced(observations, best, sigma, monitor)?.filter(|reduced| reduced.is_whole()) else {
@@ -166,7 +167,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
             cost += self.place(j, &mut network);
             for o in self.observations.of_transmitter(j) {
                 let (direction, d) = ray(o, &network);
-                let e = (o.value - network.offsets[j] - d) * o.precision;
+                let e = (o.length(&network) - d) * o.precision;
                 for (sum, u) in by_receivers[o.receiver].iter_mut().zip(direction) {
                     *sum += e * u * o.precision;
                 }
@@ -200,7 +201,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
             let mut right: Placed<D> = ([0.0; D], 0.0);
             for o in column {
                 let (direction, d) = ray(o, network);
-                let e = (o.value - network.offsets[j] - d) * o.precision;
+                let e = (o.length(network) - d) * o.precision;
                 let row: Placed<D> = (direction.map(|u| u * o.precision), self.observations.of_offset(o.precision));
                 block.add_product(1.0, &row, &row);
                 right.0.iter_mut().zip(row.0).for_each(|(sum, u)| *sum += e * u);

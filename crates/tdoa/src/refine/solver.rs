@@ -16,10 +16,10 @@ use hc::Monitor;
 /// Receivers from which on the equations are factored, not inverted: some fifty times less work.
 const MANY: usize = 200;
 
-/// Equations of all coordinates of the receivers, with the motion of least size where they leave one
+/// Equations of all coordinates of the receivers and unknowns of clocks, with the motion of least size where they leave one
 /// open.
 pub(super) enum ReceiverEquations {
-    /// The inverse, Dm x Dm by rows.
+    /// The inverse, by rows.
     Inverse(Vec<f64>),
     /// The Cholesky factor, rigid motions made to cost something.
     Factor(Llt<f64>),
@@ -33,7 +33,7 @@ impl ReceiverEquations {
         monitor: &Monitor,
         use_normal: impl FnOnce(&Normal<D>) -> T,
     ) -> Result<Option<(ReceiverEquations, T)>, Cancelled> {
-        if observations.receivers >= MANY {
+        if observations.receivers >= MANY && observations.clocks().count() == 0 {
             let mut refiner = NetworkRefiner::new(observations, f64::INFINITY, monitor);
             let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
             if let Some(factor) = factor(observations, network, normal, monitor)? {

@@ -113,7 +113,7 @@ impl<const D: usize> Beside<'_, D> {
         for (a, (column, other)) in self.columns.iter().enumerate() {
             let size = sizes[(a, 0)];
             rest.iter_mut().zip(column).for_each(|(x, y)| *x -= size * y);
-            motion.receivers.iter_mut().zip(&other.receivers).for_each(|(x, y)| *x -= size * y);
+            motion.reduced.iter_mut().zip(&other.reduced).for_each(|(x, y)| *x -= size * y);
             for ((x, _), (y, _)) in motion.transmitters.iter_mut().zip(&other.transmitters) {
                 x.iter_mut().zip(y).for_each(|(x, y)| *x -= size * y);
             }
@@ -160,7 +160,7 @@ pub(crate) fn systematic<const D: usize>(
     for (k, o) in all.iter().enumerate() {
         rows[o.receiver].push(k);
     }
-    let weighted = |k: usize| shapes(projection.rays()[k]).into_iter().map(move |h| all[k].precision * h);
+    let weighted = |k: usize| shapes(projection.ray(k)).into_iter().map(move |h| all[k].precision * h);
     let values: Vec<f64> = (0..all.len()).flat_map(weighted).collect();
     let each = D + D * (D + 1) / 2;
     let size = each * m;
@@ -180,7 +180,7 @@ pub(crate) fn systematic<const D: usize>(
         let (rest, motion) = off(&column);
         inner.col_as_slice_mut(b).copy_from_slice(&along(&rest));
         for (i, sum) in receivers.iter_mut().enumerate() {
-            add_square(sum, &from_fn(|a| motion.receivers[D * i + a]));
+            add_square(sum, &from_fn(|a| motion.reduced[D * i + a]));
         }
         transmitters.iter_mut().zip(&motion.transmitters).for_each(|(sum, (by, _))| add_square(sum, by));
     }

@@ -76,7 +76,7 @@ impl<'a, const D: usize> Weighing<'a, D> {
         descent.normal.linearise_by(descent.observations, network, &descent.residuals, terms, |e| (1.0, e));
         descent.trial.clone_from(network);
         Ok(descent.normal.solve(descent.observations, GAUGE, self.monitor)?.then(|| {
-            descent.normal.step(network, &mut descent.trial);
+            descent.normal.step(descent.observations, network, &mut descent.trial);
             descent.trial.clone()
         }))
     }

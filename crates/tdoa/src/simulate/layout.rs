@@ -51,7 +51,7 @@ impl<const D: usize> Layout<D> {
             Layout::Normal => rng.sample(StandardNormal),
             _ => diagonal * rng.random_range(-1.0..=1.0),
         });
-        Network { receivers, transmitters, offsets: offsets.collect() }
+        Network::new(receivers, transmitters, offsets.collect())
     }
 
     /// Any point.

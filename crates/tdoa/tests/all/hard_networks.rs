@@ -101,11 +101,7 @@ fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
         let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
         [cos, sin]
     };
-    let network = Network {
-        receivers: (0..6).map(corner).collect(),
-        transmitters: vec![[2.0, 0.0], [0.0, 2.0], [-1.5, 0.0]],
-        offsets: vec![0.0; 3],
-    };
+    let network = Network::new((0..6).map(corner).collect(), vec![[2.0, 0.0], [0.0, 2.0], [-1.5, 0.0]], vec![0.0; 3]);
     let measured = Pseudoranges::new(6, 3, network.pseudoranges()).unwrap();
     let mut solver = Solver::new();
     let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::calibrate::input::middle_delays::without_middle_delays;
 use crate::calibrate::unfinished::Unfinished;
+use crate::clocks::Emissions;
 use crate::degeneracy::Usable;
 use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
@@ -15,7 +16,7 @@ pub(crate) struct Input<'a> {
     /// The nodes that take part.
     pub(crate) usable: Usable,
     /// What is subtracted from the measurements of each of these transmitters; the offsets take it back at
-    /// the end. Large common times cost digits. Nothing is subtracted from distances.
+    /// the end. Large common times cost digits. Nothing is subtracted from distances, the same where all offsets are one.
     pub(crate) shifts: Vec<f64>,
 }
 
@@ -24,10 +25,14 @@ impl<'a> Input<'a> {
     pub(crate) fn new(table: Cow<'a, Pseudoranges>, usable: Usable, delayed: bool) -> Input<'a> {
         let selected = table.select(&usable.receivers, &usable.transmitters);
         // What is subtracted does not depend on the delays.
-        let shifts = match (table.are_ranges(), delayed) {
-            (true, _) => vec![0.0; selected.transmitters()],
-            (false, true) => middles(&without_middle_delays(&selected)),
-            (false, false) => middles(&selected),
+        let shifts = match (table.emissions(), delayed) {
+            (Emissions::Known, _) => vec![0.0; selected.transmitters()],
+            (Emissions::Constant, _) => {
+                let middle = median(selected.cells().values().to_vec());
+                vec![middle.unwrap_or_default(); selected.transmitters()]
+            }
+            (Emissions::Unknown, true) => middles(&without_middle_delays(&selected)),
+            (Emissions::Unknown, false) => middles(&selected),
         };
         Input { table, usable, shifts }
     }

@@ -127,7 +127,7 @@ mod tests {
             })
             .collect();
         let offsets = (0..30).map(|_| rng.random::<f64>()).collect();
-        let network = Network { receivers, transmitters, offsets };
+        let network = Network::new(receivers, transmitters, offsets);
         let noisy = network.pseudoranges().into_iter().map(|f| f + 1e-3 * rng.sample::<f64, _>(StandardNormal));
         let measured = Pseudoranges::new(10, 30, noisy.collect()).unwrap();
         (network, measured)

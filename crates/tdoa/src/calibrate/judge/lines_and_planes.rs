@@ -199,7 +199,7 @@ mod tests {
             let uncertainty =
                 Covariance { transmitters: transmitters.iter().map(along).collect(), ..Covariance::default() };
             let offsets = vec![0.0; transmitters.len()];
-            may_be_in_line(&Network { receivers: receivers.clone(), transmitters, offsets }, &uncertainty)
+            may_be_in_line(&Network::new(receivers.clone(), transmitters, offsets), &uncertainty)
         };
         let around = |k: u32| {
             let at = f64::from(k);

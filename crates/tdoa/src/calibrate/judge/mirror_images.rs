@@ -252,7 +252,7 @@ impl<const D: usize> Sides<'_, D> {
     fn beside_held(&self, kind: NodeKind, index: usize, plane: &Plane<D>, height: f64) -> Option<Mirrored<D>> {
         let with_offset = kind == NodeKind::Transmitters && !self.observations.are_ranges();
         let position = self.position(kind, index);
-        let offset = if with_offset { self.network.offsets[index] } else { 0.0 };
+        let offset = if kind == NodeKind::Transmitters { self.network.offsets[index] } else { 0.0 };
         let reflection = plane.mirrored(position);
         let sights = self.sights(kind, index);
         let loss = Loss { nu: f64::INFINITY, scale: self.deviation() };
@@ -281,7 +281,7 @@ impl<const D: usize> Sides<'_, D> {
                 NodeKind::Receivers => (self.network.transmitters[o.transmitter], self.network.offsets[o.transmitter]),
                 NodeKind::Transmitters => (self.network.receivers[o.receiver], place.offset),
             };
-            (o.value - offset - distance(place.position, position)) * o.precision
+            (o.synchronised(self.network) - offset - distance(place.position, position)) * o.precision
         };
         let pins = self.observations.pins().iter().filter(|pin| pin.node == node(kind, index));
         let off = |axis: usize, value: f64| value - place.position[axis];
@@ -302,7 +302,7 @@ impl<const D: usize> Sides<'_, D> {
             NodeKind::Receivers => {
                 let sight = |o: &Observation| Sight {
                     position: network.transmitters[o.transmitter],
-                    length: o.value - network.offsets[o.transmitter],
+                    length: o.length(network),
                     precision: o.precision,
                 };
                 self.kept.of_receiver(index).map(sight).collect()
@@ -310,7 +310,7 @@ impl<const D: usize> Sides<'_, D> {
             NodeKind::Transmitters => {
                 let sight = |o: &Observation| Sight {
                     position: network.receivers[o.receiver],
-                    length: o.value,
+                    length: o.synchronised(network),
                     precision: o.precision,
                 };
                 self.kept.of_transmitter(index).iter().map(sight).collect()

@@ -74,11 +74,7 @@ mod tests {
     }
 
     fn rings(radii: [f64; 2], height: f64) -> Network<3> {
-        Network {
-            receivers: ring(radii[0], 0.0, 9),
-            transmitters: ring(radii[1], height, 30),
-            offsets: (0..30).map(f64::from).collect(),
-        }
+        Network::new(ring(radii[0], 0.0, 9), ring(radii[1], height, 30), (0..30).map(f64::from).collect())
     }
 
     /// d^2 = a^2 + b^2 + h^2 - 2 a b cos(..): a larger, b smaller, and another height.
@@ -119,7 +115,7 @@ mod tests {
             ring(1.0, 0.0, count).into_iter().map(turned).collect()
         };
         let offsets = vec![0.0; 20];
-        let network = Network { receivers: ellipse(1.0, 9), transmitters: ellipse(1.7, 20), offsets };
+        let network = Network::new(ellipse(1.0, 9), ellipse(1.7, 20), offsets);
         assert!(may_be_raised(&network, 0.0));
         for seed in 0..50 {
             let network: Network<2> = random(9, 20, seed);
@@ -127,7 +123,7 @@ mod tests {
         }
         // Two rows turn about each other, which moves all nodes together.
         let row = |y: f64, count: usize| (0..count).map(|k| [(k * k) as f64, y]).collect();
-        let network: Network<2> = Network { receivers: row(0.0, 8), transmitters: row(4.0, 9), offsets: vec![0.0; 9] };
+        let network: Network<2> = Network::new(row(0.0, 8), row(4.0, 9), vec![0.0; 9]);
         assert!(!may_be_raised(&network, 0.0));
     }
 }

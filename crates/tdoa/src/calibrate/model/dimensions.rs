@@ -145,11 +145,8 @@ fn on_conics(flat: &Calibration) -> bool {
     let others = flat.alternatives.iter().map(|other| (&other.receivers, &other.transmitters));
     others.chain([(&flat.receivers, &flat.transmitters)]).any(|(receivers, transmitters)| {
         let located = transmitters.iter().flatten().copied();
-        let network = Network {
-            receivers: receivers.iter().flatten().copied().collect(),
-            offsets: vec![0.0; located.clone().count()],
-            transmitters: located.collect(),
-        };
+        let offsets = vec![0.0; located.clone().count()];
+        let network = Network::new(receivers.iter().flatten().copied().collect(), located.collect(), offsets);
         may_be_raised(&network, std)
     })
 }

@@ -295,7 +295,7 @@ mod tests {
 
     fn at(receivers: &[[f64; 3]], transmitters: &[[f64; 3]]) -> Network<3> {
         let offsets = vec![0.0; transmitters.len()];
-        Network { receivers: receivers.to_vec(), transmitters: transmitters.to_vec(), offsets }
+        Network::new(receivers.to_vec(), transmitters.to_vec(), offsets)
     }
 
     #[test]

@@ -84,7 +84,7 @@ impl<const D: usize> Fitting<'_, D> {
             all: (own.iter())
                 .map(|o| Sight {
                     position: alone.transmitters[o.transmitter],
-                    length: o.value - alone.offsets[o.transmitter],
+                    length: o.length(alone),
                     precision: o.precision,
                 })
                 .collect(),
@@ -101,6 +101,7 @@ impl<const D: usize> Fitting<'_, D> {
         let mut network = alone.clone();
         network.receivers[receiver] = split.places[0];
         network.receivers.push(split.places[1]);
+        network.clocks.extend(alone.clocks.get(receiver));
         let (mut network, _) = refit(&observations, &network, self.deviation, self.monitor)?;
         let rows = [receiver, observations.receivers - 1];
         let unit = median(own.iter().map(|o| 1.0 / o.precision).collect()).unwrap_or(1.0);
@@ -116,6 +117,7 @@ impl<const D: usize> Fitting<'_, D> {
         }
         let Some((gain, freedom)) = self.gain(&observations, &network, &rows, None)? else { return Ok(None) };
         let Some(after) = network.receivers.pop() else { return Ok(None) };
+        network.clocks.truncate(self.observations.receivers);
         let before = network.receivers[receiver];
         // The network that the longer part leaves.
         if 2 * split.at < sights.all.len() {

@@ -236,7 +236,7 @@ impl<const D: usize> Fitting<'_, D> {
             let motion = projection.off(&left).1;
             let mut share = 1.0;
             let better = loop {
-                let network = motion.applied(&now.network, -share);
+                let network = motion.applied(&inliers, &now.network, -share);
                 let mut fault = fault;
                 fault.size[0] += share * step;
                 let observations = self.corrected(&fault);
@@ -307,7 +307,7 @@ impl<const D: usize> Local<D> {
     fn new(observations: &Observations<D>, network: &Network<D>, receiver: usize, deviation: f64) -> Local<D> {
         let sight = |o: &Observation| {
             let j = o.transmitter;
-            (j, network.transmitters[j], o.value - network.offsets[j], o.precision)
+            (j, network.transmitters[j], o.length(network), o.precision)
         };
         Local {
             sights: observations.of_receiver(receiver).map(sight).collect(),

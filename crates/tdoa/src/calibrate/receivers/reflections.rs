@@ -53,11 +53,7 @@ impl<const D: usize> State<'_, D> {
     /// A measurement of a receiver as a distance from the transmitter.
     fn sight(&self, o: &Observation) -> Sight<D> {
         let best = &self.ranked[0].network;
-        Sight {
-            position: best.transmitters[o.transmitter],
-            length: o.value - best.offsets[o.transmitter],
-            precision: o.precision,
-        }
+        Sight { position: best.transmitters[o.transmitter], length: o.length(best), precision: o.precision }
     }
 
     /// The place on which wrong measurements of a receiver agree, beyond chance.

@@ -190,7 +190,7 @@ impl<const D: usize> Test<'_, D> {
     fn sums<'k>(&self, row: impl Iterator<Item = &'k usize>) -> Vec<Sums<D>> {
         let none = Sums { sum: 0.0, square: 0.0, g: [0.0; D], h: [[0.0; D]; D] };
         let next = |sums: &mut Sums<D>, &k: &usize| {
-            let (p, u) = (self.kept.all()[k].precision, self.projection.rays()[k]);
+            let (p, u) = (self.kept.all()[k].precision, self.projection.ray(k));
             *sums = sums.and(self.rest[k] * p, p * p, u);
             Some(*sums)
         };
@@ -206,7 +206,7 @@ impl<const D: usize> Test<'_, D> {
             let mut column = vec![0.0; self.kept.len()];
             for &k in &rows[fault.receiver] {
                 let o = &self.kept.all()[k];
-                let along = if is_move { -self.projection.rays()[k][axis] } else { 1.0 };
+                let along = if is_move { -self.projection.ray(k)[axis] } else { 1.0 };
                 column[k] = o.precision * fault.shape(o.transmitter, n) * along;
             }
             let plain: f64 = column.iter().map(|x| x * x).sum();

@@ -55,10 +55,10 @@ impl<const D: usize> State<'_, D> {
             if fault.kind == ReceiverErrorKind::Move {
                 // Its place is somewhere between the two.
                 let mut motion = Motion {
-                    receivers: vec![0.0; D * kept.receivers],
+                    reduced: vec![0.0; kept.reduced()],
                     transmitters: vec![([0.0; D], 0.0); kept.transmitters],
                 };
-                motion.receivers[D * fault.receiver..D * (fault.receiver + 1)].copy_from_slice(&fault.size);
+                motion.reduced[D * fault.receiver..D * (fault.receiver + 1)].copy_from_slice(&fault.size);
                 found.add_product(1.0, &motion, &motion);
             } else {
                 for (_, motion) in columns(kept, &projection, &[*fault], monitor)? {

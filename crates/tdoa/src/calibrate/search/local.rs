@@ -8,6 +8,7 @@ use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::submaps::{FIT, Submap, fit, largest, overlap};
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
+use crate::clocks::Emissions;
 use crate::degeneracy::usable;
 use crate::flatness::flatness;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
@@ -269,8 +270,11 @@ impl<const D: usize> ReceiverLayout<D> {
                     })
                 };
                 let sights: Vec<Sight<D>> = (0..measured.receivers()).filter_map(sight).collect();
-                let locate =
-                    if measured.are_ranges() { multilateration::receiver } else { multilateration::transmitter };
+                let locate = if measured.emissions() == Emissions::Known {
+                    multilateration::receiver
+                } else {
+                    multilateration::transmitter
+                };
                 Ok((sights.len() >= heard_by::<D>()).then(|| locate(&sights, &loss)).flatten())
             })
             .collect::<Result<_, CalibrateError<D>>>()?;

@@ -197,6 +197,7 @@ fn cast<const A: usize, const B: usize>(network: &Network<A>) -> Network<B> {
         receivers: network.receivers.iter().map(point).collect(),
         transmitters: network.transmitters.iter().map(point).collect(),
         offsets: network.offsets.clone(),
+        clocks: network.clocks.clone(),
     }
 }
 

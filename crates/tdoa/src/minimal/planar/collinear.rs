@@ -134,10 +134,7 @@ impl RankOne<'_> {
         let transmitters =
             self.along.iter().zip(self.p).map(|(along, p)| off_line(foot(along), p * p)).collect::<Option<_>>()?;
         let receivers = std::iter::once(0.0).chain(x).map(|x| [c * x, 0.0]).collect();
-        Some(Collinear {
-            kind: NodeKind::Receivers,
-            network: Network { receivers, transmitters, offsets: self.p.to_vec() },
-        })
+        Some(Collinear { kind: NodeKind::Receivers, network: Network::new(receivers, transmitters, self.p.to_vec()) })
     }
 
     /// Transmitters `s_j = c along_j e`:
@@ -159,10 +156,7 @@ impl RankOne<'_> {
         });
         let receivers = std::iter::once(off_line(first, fit[2])).chain(rest).collect::<Option<_>>()?;
         let transmitters = y.iter().map(|y| [c * y, 0.0]).collect();
-        Some(Collinear {
-            kind: NodeKind::Transmitters,
-            network: Network { receivers, transmitters, offsets: p.to_vec() },
-        })
+        Some(Collinear { kind: NodeKind::Transmitters, network: Network::new(receivers, transmitters, p.to_vec()) })
     }
 }
 

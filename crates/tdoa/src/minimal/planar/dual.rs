@@ -38,7 +38,7 @@ pub(crate) fn network(f: &[f64], width: usize, x: &[f64]) -> Option<Network> {
         [first[0] - 0.5 * l / root_k, first[1] - 0.5 / root_m],
     ]);
     offsets.extend([p1, p2, p3]);
-    let network = Network { receivers, transmitters, offsets };
+    let network = Network::new(receivers, transmitters, offsets);
     network.is_finite().then_some(network)
 }
 

@@ -74,7 +74,7 @@ impl FormulationIn for FourFive {
         let (r2, r3) = ([root_e, 0.0], [l * root_e, root_h]);
         let r4 = [alpha * r2[0] + beta * r3[0], beta * r3[1]];
         let (transmitters, offsets) = (Vec::with_capacity(COLUMNS), Vec::with_capacity(COLUMNS));
-        let mut network = Network { receivers: vec![[0.0, 0.0], r2, r3, r4], transmitters, offsets };
+        let mut network = Network::new(vec![[0.0, 0.0], r2, r3, r4], transmitters, offsets);
         for j in 0..COLUMNS {
             let sight = Sight::new(f, x, j);
             let p = sight.p();

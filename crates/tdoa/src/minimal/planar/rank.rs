@@ -185,7 +185,7 @@ fn assemble(
             .iter()
             .map(|[y, z]| [first[0] - 0.5 * (l11 * y + l12 * z), first[1] - 0.5 * l22 * z]),
     );
-    let network = Network { receivers, transmitters, offsets: p.to_vec() };
+    let network = Network::new(receivers, transmitters, p.to_vec());
     network.is_finite().then_some(network)
 }
 

@@ -167,7 +167,7 @@ impl<S: Size> FormulationIn<3> for Dual<S> {
             offsets.push(p5);
             transmitters.push(plus(plus(plus(first, sides[0], g2), sides[1], g3), sides[2], g4));
         }
-        let network = Network { receivers, transmitters, offsets };
+        let network = Network::new(receivers, transmitters, offsets);
         network.is_finite().then_some(network)
     }
 }

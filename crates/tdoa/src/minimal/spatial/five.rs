@@ -76,11 +76,11 @@ pub(crate) fn five_transmitters(measured: &Pseudoranges) -> Result<Network<3>, M
         scaled.values.iter().map(|row| from_fn(|j| (row[j] - offsets[j]) * (row[j] - offsets[j]))).collect();
     let found = positions(&squared)?;
     let metres = |p: [f64; 3]| p.map(|x| scaled.unit * x);
-    let linear = Network {
-        receivers: found.receivers.into_iter().map(metres).collect(),
-        transmitters: found.transmitters.into_iter().map(metres).collect(),
-        offsets: (0..5).map(|j| scaled.means[j] + scaled.unit * offsets[j]).collect(),
-    };
+    let linear = Network::new(
+        found.receivers.into_iter().map(metres).collect(),
+        found.transmitters.into_iter().map(metres).collect(),
+        (0..5).map(|j| scaled.means[j] + scaled.unit * offsets[j]).collect(),
+    );
     if !linear.is_finite() {
         return Err(MinimalError::SpecialPosition);
     }

@@ -106,7 +106,7 @@ impl FormulationIn<3> for SixSix {
             transmitters.push([x, y, (product(2) - basis[2][0] * x - basis[2][1] * y) / basis[2][2]]);
             offsets.push(p);
         }
-        let network = Network { receivers, transmitters, offsets };
+        let network = Network::new(receivers, transmitters, offsets);
         network.is_finite().then_some(network)
     }
 }

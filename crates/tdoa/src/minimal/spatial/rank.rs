@@ -78,7 +78,7 @@ fn networks(
         let p: Vec<f64> = quotients.iter().map(|quotient| offset(quotient, plane)).collect();
         let squared: Vec<f64> = data.matrix.iter().enumerate().map(|(k, f)| (f - p[k % n]).powi(2)).collect();
         let found = positions(&squared, n, degrees)?;
-        let mut network = Network { receivers: found.receivers, transmitters: found.transmitters, offsets: p };
+        let mut network = Network::new(found.receivers, found.transmitters, p);
         data.restore(&mut network);
         network.is_finite().then_some(network)
     };

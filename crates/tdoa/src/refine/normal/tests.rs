@@ -1,6 +1,7 @@
 //! The elimination against its definition.
 
 use super::*;
+use crate::clocks::Emissions;
 use crate::network::tests::random;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::NetworkRefiner;
@@ -12,7 +13,7 @@ fn is_eliminated_as_defined<const D: usize>(hearing: usize, are_ranges: bool) {
     let values = network.pseudoranges();
     let measured = (0..600).map(|k| if heard(k / 20, k % 20) { values[k] } else { f64::NAN }).collect();
     let measured = Pseudoranges::new(30, 20, measured).unwrap();
-    let measured = if are_ranges { measured.into_ranges() } else { measured };
+    let measured = if are_ranges { measured.with_emissions(Emissions::Known) } else { measured };
     let observations = Observations::new(&measured, |_, _| true);
     let of_offset = if are_ranges { 0.0 } else { 1.0 };
     let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY, &Monitor::default());

@@ -15,7 +15,7 @@ fn random(rng: &mut Pcg64Mcg, count: usize, size: [f64; 3]) -> Vec<[f64; 3]> {
 /// A network in a room of 10 m x 8 m x 3 m.
 fn room(rng: &mut Pcg64Mcg, m: usize, n: usize) -> Network<3> {
     let [receivers, transmitters] = [m, n].map(|count| random(rng, count, [10.0, 8.0, 3.0]));
-    Network { receivers, transmitters, offsets: vec![0.0; n] }
+    Network::new(receivers, transmitters, vec![0.0; n])
 }
 
 /// Measurements of a network and the least-squares network.
@@ -68,7 +68,7 @@ fn ellipsoids_of_a_weak_network_hold_the_truth() {
         // Six corners of a room, of which the last two are left out in turn.
         let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { [8.0, 6.0, 2.8][axis] } else { 0.0 });
         let receivers: Vec<[f64; 3]> = (0..6).map(|k| corner((k + seed as usize) % 8)).collect();
-        let truth = Network { receivers, transmitters: random(&mut rng, 40, [8.0, 6.0, 2.0]), offsets: vec![0.0; 40] };
+        let truth = Network::new(receivers, random(&mut rng, 40, [8.0, 6.0, 2.0]), vec![0.0; 40]);
         let (observations, network) = fitted(&mut rng, &truth);
         let monitor = Monitor::default();
         let linear = covariance(&observations, &network, SIGMA, &monitor).unwrap().unwrap();

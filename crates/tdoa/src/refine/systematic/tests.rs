@@ -23,7 +23,7 @@ fn room<const D: usize>(m: usize, n: usize, rng: &mut Pcg64Mcg) -> Network<D> {
         (0..count).map(|_| std::array::from_fn(|k| rng.random_range(0.0..[10.0, 8.0, 3.0][k]))).collect()
     };
     let (receivers, transmitters) = (points(m), points(n));
-    Network { receivers, transmitters, offsets: vec![0.0; n] }
+    Network::new(receivers, transmitters, vec![0.0; n])
 }
 
 fn normal(rng: &mut Pcg64Mcg) -> f64 {
@@ -99,8 +99,9 @@ fn is_the_likeliest<const D: usize>(m: usize, n: usize) {
     let left = count - observations.unknowns();
     let basis = eigen.U().subcols(count - left, left);
     let mut z = Mat::<f64>::zeros(count, each * m);
-    for (k, (o, u)) in observations.all().iter().zip(projection.rays()).enumerate() {
-        shapes(*u).iter().enumerate().for_each(|(h, x)| z[(k, each * o.receiver + h)] = *x);
+    for (k, o) in observations.all().iter().enumerate() {
+        let u = projection.ray(k);
+        shapes(u).iter().enumerate().for_each(|(h, x)| z[(k, each * o.receiver + h)] = *x);
     }
     let z = basis.transpose() * z;
     let e = Mat::from_fn(count, 1, |k, _| observations.all()[k].residual(&network));

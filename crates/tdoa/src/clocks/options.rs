@@ -1,0 +1,45 @@
+//! What the clocks of transmitters and receivers may do.
+
+use crate::clocks::{Emissions, Recorders};
+use crate::pseudoranges::Pseudoranges;
+use serde::{Deserialize, Serialize};
+
+/// What the clocks of receivers do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ReceiverClocks {
+    /// All receivers share one, or theirs are synchronised.
+    #[default]
+    Common,
+    /// Each [recorder](Pseudoranges::with_recorders) was started by itself: its clock is off by an unknown offset.
+    Offset,
+    /// Each recorder's clock is off by an unknown offset, and runs fast or slow by an unknown rate. Values are readings of
+    /// that clock.
+    Rate,
+}
+
+/// What is unknown of the clocks of transmitters and receivers.
+///
+/// A measurement is f_ij = |r_i - s_j| + o_j + a_d + b_d t_ij: o_j is the offset of transmitter j, a_d the offset and b_d
+/// the rate of the recorder d of receiver i, and t_ij the time by that recorder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct Clocks {
+    /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
+    pub emissions: Emissions,
+    /// What the clocks of receivers do. Default [`ReceiverClocks::Common`].
+    pub receivers: ReceiverClocks,
+}
+
+impl Clocks {
+    /// Measurements with these unknowns of clocks.
+    pub(crate) fn of(&self, measured: &Pseudoranges) -> Pseudoranges {
+        let recorders = match self.receivers {
+            ReceiverClocks::Common => None,
+            ReceiverClocks::Offset => Some(Recorders::with_offsets(measured.recorders())),
+            ReceiverClocks::Rate => Some(Recorders::with_rates(measured.recorders(), measured.cells())),
+        };
+        measured.clone().with_emissions(self.emissions).with_unknown_clocks(recorders)
+    }
+}

@@ -1,0 +1,74 @@
+//! Recorders, each with a clock of its own.
+
+use crate::cells::Cells;
+use crate::median::median;
+
+/// Share of a recorder's readings that lie within half a recording of its middle.
+const WITHIN: f64 = 0.9;
+
+/// Which receivers share a recorder, and so a clock, and what is unknown of these clocks.
+#[derive(Debug, Clone)]
+pub(crate) struct Recorders {
+    /// The recorder of each receiver.
+    of_receivers: Vec<usize>,
+    /// Where clocks may drift, times of measurements by them, from about -1 to 1 over the recording.
+    times: Option<Cells<f64>>,
+}
+
+impl Recorders {
+    /// These recorders of the receivers, each with an unknown offset.
+    pub(crate) fn with_offsets(of_receivers: Vec<usize>) -> Recorders {
+        Recorders { of_receivers, times: None }
+    }
+
+    /// These recorders of the receivers, each with an unknown offset and an unknown rate, from the readings of their clocks.
+    pub(crate) fn with_rates(of_receivers: Vec<usize>, all: &Cells<f64>) -> Recorders {
+        let count = of_receivers.iter().max().map_or(0, |last| last + 1);
+        let mut readings = vec![Vec::new(); count];
+        for (i, _, value) in all.iter() {
+            readings[of_receivers[i]].push(*value);
+        }
+        let middles: Vec<f64> = readings.iter().map(|all| median(all.clone()).unwrap_or_default()).collect();
+        let mut unit = 0.0f64;
+        for (middle, readings) in middles.iter().zip(readings) {
+            let mut apart: Vec<f64> = readings.into_iter().map(|reading| (reading - middle).abs()).collect();
+            apart.sort_by(f64::total_cmp);
+            let most = (WITHIN * apart.len() as f64) as usize;
+            unit = unit.max(apart.get(most.min(apart.len().saturating_sub(1))).copied().unwrap_or_default());
+        }
+        let time = |i: usize, value: f64| if unit > 0.0 { (value - middles[of_receivers[i]]) / unit } else { 0.0 };
+        let times = all.map(|i, _, value| time(i, *value));
+        Recorders { of_receivers, times: Some(times) }
+    }
+
+    /// The recorder of each receiver.
+    pub(crate) fn of_receivers(&self) -> &[usize] {
+        &self.of_receivers
+    }
+
+    /// The recorders of these receivers, in ascending order.
+    pub(crate) fn present(&self) -> Vec<usize> {
+        let mut all = self.of_receivers.clone();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Whether clocks may drift.
+    pub(crate) fn drift(&self) -> bool {
+        self.times.is_some()
+    }
+
+    /// The time of a measurement; 0 where clocks do not drift.
+    pub(crate) fn time(&self, i: usize, j: usize) -> f64 {
+        self.times.as_ref().and_then(|times| times.get(i, j)).copied().unwrap_or(0.0)
+    }
+
+    /// Those of these receivers and transmitters, in this order.
+    pub(crate) fn select(&self, receivers: &[usize], transmitters: &[usize]) -> Recorders {
+        Recorders {
+            of_receivers: receivers.iter().map(|&i| self.of_receivers[i]).collect(),
+            times: self.times.as_ref().map(|times| times.select(receivers, transmitters)),
+        }
+    }
+}

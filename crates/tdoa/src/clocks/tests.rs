@@ -1,0 +1,110 @@
+//! Networks with clocks, for tests.
+
+use super::{Emissions, Recorders};
+use crate::network::Network;
+use crate::network::tests::random;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+
+/// Receivers that share a recorder.
+const CHANNELS: usize = 2;
+
+/// What is unknown of clocks: of emissions, and of recorders nothing, offsets, or offsets and drifts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Model {
+    pub(crate) emissions: Emissions,
+    pub(crate) recorders: usize,
+}
+
+/// All models.
+pub(crate) fn models() -> impl Iterator<Item = Model> {
+    let all = [Emissions::Unknown, Emissions::Known, Emissions::Constant];
+    all.into_iter().flat_map(|emissions| (0..3).map(move |recorders| Model { emissions, recorders }))
+}
+
+impl Model {
+    /// A random network with such clocks, and all measurements but three.
+    pub(crate) fn network<const D: usize>(self, m: usize, n: usize) -> (Network<D>, Pseudoranges) {
+        let mut network: Network<D> = random(m, n, 2);
+        match self.emissions {
+            Emissions::Unknown => {}
+            Emissions::Known => network.offsets.fill(0.0),
+            Emissions::Constant => network.offsets.fill(0.7),
+        }
+        let time = |j: usize| 2.0 * j as f64 / (n - 1) as f64 - 1.0;
+        let clock = |i: usize| {
+            let recorder = (i / CHANNELS) as f64;
+            [(1.0 + recorder).sin(), if self.recorders == 2 { (2.0 + 3.0 * recorder).cos() } else { 0.0 }]
+        };
+        if self.recorders > 0 {
+            network.clocks = (0..m).map(clock).collect();
+        }
+        // Where clocks drift, times are those of these readings.
+        let readings: Vec<f64> = (0..m * n).map(|k| 100.0 * time(k % n)).collect();
+        let names = (0..m).map(|i| format!("rec{}", i / CHANNELS)).collect();
+        let readings = Pseudoranges::new(m, n, readings).unwrap().with_recorders(names).unwrap();
+        let clocks = match self.recorders {
+            0 => None,
+            1 => Some(Recorders::with_offsets(readings.recorders())),
+            _ => Some(Recorders::with_rates(readings.recorders(), readings.cells())),
+        };
+        let mut values = network.pseudoranges();
+        for (k, value) in values.iter_mut().enumerate() {
+            let [offset, drift] = network.clocks.get(k / n).copied().unwrap_or_default();
+            *value += offset + drift * clocks.as_ref().map_or(0.0, |clocks| clocks.time(k / n, k % n));
+        }
+        [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
+        let measured = Pseudoranges::new(m, n, values).unwrap().with_emissions(self.emissions);
+        (network, measured.with_unknown_clocks(clocks))
+    }
+
+    /// Unknowns of a network of this size: those of nodes, less a rigid motion, and those of clocks.
+    fn unknowns<const D: usize>(self, m: usize, n: usize) -> usize {
+        let recorders = m.div_ceil(CHANNELS);
+        let of_recorders = match (self.recorders, self.emissions) {
+            (0, _) => 0,
+            // The common offset of all is that of transmitters.
+            (1, Emissions::Unknown | Emissions::Constant) => recorders - 1,
+            (1, _) => recorders,
+            (_, Emissions::Unknown) => 2 * (recorders - 1),
+            (_, Emissions::Constant) => 2 * recorders - 1,
+            _ => 2 * recorders,
+        };
+        let offsets = match self.emissions {
+            Emissions::Unknown => n,
+            Emissions::Known => 0,
+            Emissions::Constant => 1,
+        };
+        D * (m + n) - D * (D + 1) / 2 + offsets + of_recorders
+    }
+}
+
+/// Values of the clocks' unknowns, one after the other, and networks and unknowns that agree.
+fn are_as_the_model_says<const D: usize>(m: usize, n: usize) {
+    for model in models() {
+        let (network, measured) = model.network::<D>(m, n);
+        let observations = Observations::<D>::new(&measured, |_, _| true);
+        assert!(observations.all().iter().all(|o| o.residual(&network).abs() < 1e-12), "{model:?}");
+        assert_eq!(observations.unknowns(), model.unknowns::<D>(m, n), "{model:?}");
+        // Terms are derivatives.
+        let step = 1e-6;
+        for at in 0..observations.clocks().count() {
+            let mut changes = vec![0.0; observations.clocks().count()];
+            changes[at] = step;
+            let mut moved = network.clone();
+            observations.clocks().add(&mut moved, &changes, 1.0);
+            for (k, o) in observations.all().iter().enumerate() {
+                let by_difference = (o.residual(&moved) - o.residual(&network)) / step;
+                let terms = observations.clock_terms().of(k).iter();
+                let term = terms.filter(|(to, _)| *to == D * m + at).map(|(_, x)| x).sum::<f64>();
+                assert!((by_difference - term).abs() < 1e-8, "{model:?}: {by_difference} {term}");
+            }
+        }
+    }
+}
+
+#[test]
+fn unknowns_and_terms_are_those_of_the_model() {
+    are_as_the_model_says::<2>(7, 8);
+    are_as_the_model_says::<3>(8, 9);
+}

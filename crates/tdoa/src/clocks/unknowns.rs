@@ -1,0 +1,89 @@
+//! The unknowns of clocks.
+
+use crate::clocks::{Emissions, Recorders};
+use crate::network::Network;
+
+/// Which unknowns the clocks have beside the network's nodes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ClockUnknowns {
+    /// The one that all transmitters' offsets are, if they are one.
+    constant: Option<usize>,
+    /// Per receiver, the offset and the drift of its recorder, as far as they are unknown. Empty where all receivers share
+    /// a clock.
+    recorders: Vec<[Option<usize>; 2]>,
+    count: usize,
+}
+
+impl ClockUnknowns {
+    /// Those of receivers with these recorders, and of transmitters of which this is known.
+    ///
+    /// Where offsets of transmitters are unknown, what all recorders have in common is one of these. The clock of the first
+    /// recorder is the reference then.
+    pub(crate) fn new(emissions: Emissions, recorders: Option<&Recorders>) -> ClockUnknowns {
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            count - 1
+        };
+        let constant = (emissions == Emissions::Constant).then(&mut next);
+        let Some(recorders) = recorders else { return ClockUnknowns { constant, recorders: Vec::new(), count } };
+        let all = recorders.present();
+        // By recorder, those that are there in ascending order.
+        let offset_of_first = emissions == Emissions::Known;
+        let drift_of_first = emissions != Emissions::Unknown;
+        let unknowns: Vec<[Option<usize>; 2]> = (0..all.len())
+            .map(|k| {
+                let offset = (k > 0 || offset_of_first).then(&mut next);
+                let drift = (recorders.drift() && (k > 0 || drift_of_first)).then(&mut next);
+                [offset, drift]
+            })
+            .collect();
+        let of = |recorder: &usize| all.binary_search(recorder).map_or([None; 2], |k| unknowns[k]);
+        let recorders = recorders.of_receivers().iter().map(of).collect();
+        ClockUnknowns { constant, recorders, count }
+    }
+
+    /// How many there are.
+    #[inline]
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Those on which the residual of a measurement of this receiver and time depends, with its derivative over its precision.
+    pub(crate) fn terms(&self, receiver: usize, time: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let [offset, drift] = self.recorders.get(receiver).copied().unwrap_or([None; 2]);
+        let all = [self.constant.map(|at| (at, -1.0)), offset.map(|at| (at, -1.0)), drift.map(|at| (at, -time))];
+        all.into_iter().flatten()
+    }
+
+    /// Gives a network clocks, if it has none and there are unknowns of them.
+    pub(crate) fn begin<const D: usize>(&self, network: &mut Network<D>) {
+        if network.clocks.len() != self.recorders.len() {
+            network.clocks = vec![[0.0; 2]; self.recorders.len()];
+        }
+    }
+
+    /// Adds a share of changes of these unknowns to those of a network.
+    pub(crate) fn add<const D: usize>(&self, network: &mut Network<D>, changes: &[f64], share: f64) {
+        if let Some(constant) = self.constant {
+            network.offsets.iter_mut().for_each(|offset| *offset += share * changes[constant]);
+        }
+        for (clock, unknowns) in network.clocks.iter_mut().zip(&self.recorders) {
+            for (value, unknown) in clock.iter_mut().zip(unknowns) {
+                *value += unknown.map_or(0.0, |at| share * changes[at]);
+            }
+        }
+    }
+
+    /// With a further receiver, the last one, that has the recorder of this one.
+    pub(crate) fn split(&self, receiver: usize) -> ClockUnknowns {
+        let mut recorders = self.recorders.clone();
+        recorders.extend(self.recorders.get(receiver).copied());
+        ClockUnknowns { recorders, ..*self }
+    }
+
+    /// The variance of what all transmitters' offsets have in common, if they are one, from those of these unknowns.
+    pub(crate) fn shared_variance(&self, of: impl Fn(usize) -> f64) -> Option<f64> {
+        self.constant.map(of)
+    }
+}
