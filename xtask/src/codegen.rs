@@ -49,6 +49,24 @@ const FAMILIES: &[Known] = &[
         "crates/tdoa/src/generated/five_six.rs",
     ),
     known(
+        "3r3s_ranges",
+        "crates/tdoa/families/3r3s_ranges.toml",
+        "crates/tdoa/families/3r3s_ranges.start.json",
+        "crates/tdoa/src/generated/three_three_ranges.rs",
+    ),
+    known(
+        "4r6s_ranges",
+        "crates/tdoa/families/4r6s_ranges.toml",
+        "crates/tdoa/families/4r6s_ranges.start.json",
+        "crates/tdoa/src/generated/four_six_ranges.rs",
+    ),
+    known(
+        "5r5s_ranges",
+        "crates/tdoa/families/5r5s_ranges.toml",
+        "crates/tdoa/families/5r5s_ranges.start.json",
+        "crates/tdoa/src/generated/five_five_ranges.rs",
+    ),
+    known(
         "five_point",
         "examples/families/five_point.toml",
         "examples/families/five_point.start.json",

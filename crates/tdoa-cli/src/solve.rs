@@ -11,7 +11,7 @@ use tdoa::node_table::network_table;
 use tdoa::picture::networks as picture;
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::summary::networks;
-use tdoa::{MinimalSolution, Monitor, Pseudoranges};
+use tdoa::{Emissions, MinimalSolution, Monitor, Pseudoranges};
 
 use crate::frame::Frame;
 use crate::units::Unit;
@@ -19,7 +19,7 @@ use crate::{Failure, input, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
 /// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 10r/4s, 7r/5s, 6r/6s and all larger
-/// sizes.
+/// sizes. Of ranges (--ranges) 3r/3s and all larger sizes, in space 6r/4s, 5r/5s, 4r/6s and all larger sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing. - for standard
@@ -31,16 +31,20 @@ pub(crate) struct Arguments {
     /// tables of measurements in space may fit networks in the plane too.
     #[arg(long, value_name = "2|3", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dimensions: u8,
+    /// Takes the measurements as distances, such as two-way ranges or arrival times less known send times:
+    /// transmitters have no offsets, and fewer nodes are enough. None may be negative.
+    #[arg(long)]
+    ranges: bool,
     /// How far below zero a distance may lie for a network to count as physical, and in space how
     /// large residuals may be, as a share of the size of the data; for noisy data the noise.
     #[arg(long, default_value_t = MinimalOptions::default().tolerance)]
     tolerance: f64,
     /// Where paths start: at the stored solutions of a generic instance, or, in the plane, at a
-    /// polyhedral start system computed for these data.
+    /// polyhedral start system computed for these data; ranges from the stored ones only.
     #[arg(long, value_enum, default_value = "stored")]
     start: StartArgument,
     /// Stops at the first physical network with a residual (root mean square, metres) below this;
-    /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only, in space 8r/5s, 7r/5s, 6r/6s and 10r/4s.
+    /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only, in space 8r/5s, 7r/5s, 6r/6s and 10r/4s; of ranges the smallest sizes.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
     /// Proves by interval arithmetic that the complex roots at the ends of all paths exist and are
@@ -121,6 +125,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Unusable("--first-under must not be negative".to_string()));
     }
     let mut options = MinimalOptions::default();
+    options.emissions = Emissions::of_ranges(arguments.ranges);
     options.first_under = arguments.first_under;
     options.tolerance = arguments.tolerance;
     options.start = match arguments.start {
@@ -268,7 +273,9 @@ fn summary<const D: usize>(
             let in_unit = unit.map_or_else(String::new, |unit| {
                 format!(" = {} {}", coordinate(unit.of(*o), unit.decimals(digits)), unit.name)
             });
-            text += &format!("transmitter {name:>5}{}   offset {:>13}{in_unit}\n", place(p), shown(*o));
+            let offset = format!("   offset {:>13}{in_unit}", shown(*o));
+            let offset = if solution.emissions == Emissions::Known { "" } else { &*offset };
+            text += &format!("transmitter {name:>5}{}{offset}\n", place(p));
         }
     }
     text

@@ -3,10 +3,16 @@
 use hc::poly::{counted, one_or};
 use thiserror::Error;
 
+use crate::clocks::Emissions;
 use crate::duplicates::{Copied, Copies, constant_difference, counted_once, printed};
 use crate::pseudoranges::Pseudoranges;
 
-/// A transmitter needs this many measurements to be kept: as many as its position and offset have
+/// Unknown numbers of a transmitter: its position, and its offset unless measurements are ranges.
+pub(crate) fn of_transmitter<const D: usize>(emissions: Emissions) -> usize {
+    if emissions == Emissions::Known { D } else { D + 1 }
+}
+
+/// A transmitter with an offset needs this many measurements to be kept: as many as its position and offset have
 /// numbers, and one to fix which of two solutions is meant.
 pub(crate) const fn least_per_transmitter<const D: usize>() -> usize {
     D + 2
@@ -21,26 +27,29 @@ const fn least_per_receiver<const D: usize>() -> usize {
 const MAX_RECEIVERS: usize = 2_000;
 
 /// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn -
-/// dm - (d + 1)n + d(d + 1)/2, of which the last are the motions of a network as a whole.
-pub(crate) fn excess<const D: usize>(receivers: usize, transmitters: usize) -> i64 {
+/// dm - (d + 1)n + d(d + 1)/2, of which the last are the motions of a network as a whole. Transmitters of ranges have
+/// one unknown less.
+pub(crate) fn excess<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions) -> i64 {
     let (m, n, d) = (receivers as i64, transmitters as i64, D as i64);
-    m * n - d * m - (d + 1) * n + d * (d + 1) / 2
+    m * n - d * m - of_transmitter::<D>(emissions) as i64 * n + d * (d + 1) / 2
 }
 
 /// Whether a complete matrix of this size has finitely many solutions: receivers that determine a
 /// transmitter with one to spare, transmitters that determine a receiver likewise, and no more
 /// unknowns than equations.
-pub(crate) fn is_solvable<const D: usize>(receivers: usize, transmitters: usize) -> bool {
-    receivers >= D + 2 && transmitters > D && excess::<D>(receivers, transmitters) >= 0
+pub(crate) fn is_solvable<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions) -> bool {
+    receivers > of_transmitter::<D>(emissions)
+        && transmitters > D
+        && excess::<D>(receivers, transmitters, emissions) >= 0
 }
 
 /// The smallest solvable sizes, fewest transmitters first, in words. A matrix is solvable if it holds
 /// one of them.
-fn smallest<const D: usize>() -> String {
+fn smallest<const D: usize>(emissions: Emissions) -> String {
     let most = (D + 1) * (D + 2);
-    let sizes = (D + 1..=most).flat_map(|n| (D + 2..=most).map(move |m| (m, n)));
-    let is_smallest =
-        |&(m, n): &(usize, usize)| is_solvable::<D>(m, n) && !is_solvable::<D>(m - 1, n) && !is_solvable::<D>(m, n - 1);
+    let sizes = (D + 1..=most).flat_map(|n| (D + 1..=most).map(move |m| (m, n)));
+    let is_solvable = |m: usize, n: usize| is_solvable::<D>(m, n, emissions);
+    let is_smallest = |&(m, n): &(usize, usize)| is_solvable(m, n) && !is_solvable(m - 1, n) && !is_solvable(m, n - 1);
     let all: Vec<(usize, usize)> = sizes.filter(is_smallest).collect();
     let name = |(k, (m, n)): (usize, &(usize, usize))| match k {
         0 => format!("{m} receivers and {n} transmitters"),
@@ -146,18 +155,19 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
     if m > MAX_RECEIVERS {
         return Err(Degeneracy::TooManyReceivers { receivers: m });
     }
-    if !is_solvable::<D>(m, n) {
-        return Err(too_small::<D>(m, n, String::new()));
+    let emissions = measured.emissions();
+    if !is_solvable::<D>(m, n, emissions) {
+        return Err(too_small::<D>(m, n, emissions, String::new()));
     }
     let mut kept = Kept { measured, receivers: vec![true; m], transmitters: vec![true; n] };
     let mut warnings = Vec::new();
-    kept.drop_sparse(least_per_transmitter::<D>(), least_per_receiver::<D>());
+    kept.drop_sparse(of_transmitter::<D>(emissions) + 1, least_per_receiver::<D>());
     let dropped = kept.names(false);
     if !dropped.is_empty() {
         warnings.push(format!(
             "left out for too few measurements: {dropped}; a transmitter needs at least {} receivers \
              that hear it, a receiver {} transmitters",
-            least_per_transmitter::<D>(),
+            of_transmitter::<D>(emissions) + 1,
             least_per_receiver::<D>()
         ));
     }
@@ -180,11 +190,11 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
     }
     let transmitters = without_copies(measured, &receivers, transmitters, &mut warnings);
     let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);
-    if !is_solvable::<D>(receivers.len(), distinct) {
-        return Err(too_small::<D>(receivers.len(), distinct, left));
+    if !is_solvable::<D>(receivers.len(), distinct, emissions) {
+        return Err(too_small::<D>(receivers.len(), distinct, emissions, left));
     }
     let measurements = measured.select(&receivers, &transmitters).observed();
-    let unknowns = D * receivers.len() + (D + 1) * transmitters.len() - D * (D + 1) / 2;
+    let unknowns = D * receivers.len() + of_transmitter::<D>(emissions) * transmitters.len() - D * (D + 1) / 2;
     if measurements < unknowns {
         return Err(Degeneracy::TooFew {
             receivers: receivers.len(),
@@ -232,16 +242,16 @@ pub(crate) fn space(dimensions: usize) -> &'static str {
     if dimensions == 2 { "in the plane" } else { "in space" }
 }
 
-fn too_small<const D: usize>(receivers: usize, transmitters: usize, left: String) -> Degeneracy {
-    let remedy = remedy::<D>(receivers, transmitters);
-    Degeneracy::TooSmall { dimensions: D, receivers, transmitters, left, smallest: smallest::<D>(), remedy }
+fn too_small<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions, left: String) -> Degeneracy {
+    let remedy = remedy::<D>(receivers, transmitters, emissions);
+    Degeneracy::TooSmall { dimensions: D, receivers, transmitters, left, smallest: smallest::<D>(emissions), remedy }
 }
 
 /// The fewest nodes to add, receivers or transmitters, in words.
-fn remedy<const D: usize>(receivers: usize, transmitters: usize) -> String {
+fn remedy<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions) -> String {
     let most = D * (D + 1);
-    let more_receivers = (0..=most).find(|k| is_solvable::<D>(receivers + k, transmitters));
-    let more_transmitters = (0..=most).find(|k| is_solvable::<D>(receivers, transmitters + k));
+    let more_receivers = (0..=most).find(|k| is_solvable::<D>(receivers + k, transmitters, emissions));
+    let more_transmitters = (0..=most).find(|k| is_solvable::<D>(receivers, transmitters + k, emissions));
     let count = |k: usize, what: &str| format!("{k} {what}{}", if k == 1 { "" } else { "s" });
     match (more_receivers, more_transmitters) {
         (Some(a), Some(b)) => format!("{} or {}", count(a, "receiver"), count(b, "transmitter")),

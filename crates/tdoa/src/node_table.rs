@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use crate::align::Transform;
     use crate::minimal::{Candidate, PathCounts, RootCounts};
-    use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+    use crate::{CalibrateOptions, Emissions, SimulateOptions, calibrate, simulate};
 
     #[test]
     fn receivers_are_read_back() {
@@ -117,6 +117,7 @@ mod tests {
             condition: 1.0,
         };
         let solution = MinimalSolution {
+            emissions: Emissions::Unknown,
             configuration: "8r/5s".to_string(),
             solver: "8r/5s",
             paths: PathCounts::default(),

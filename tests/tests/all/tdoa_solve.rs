@@ -19,10 +19,14 @@ fn matrix(receivers: &[[f64; 2]; 6], transmitters: &[[f64; 2]; 3]) -> String {
 }
 
 fn solve(content: &str) -> (Value, String, Option<i32>) {
+    solve_with(content, &["--prove"])
+}
+
+fn solve_with(content: &str, options: &[&str]) -> (Value, String, Option<i32>) {
     let directory = tempfile::tempdir().expect("directory");
     let file = directory.path().join("pseudoranges.csv");
     std::fs::write(&file, content).expect("written");
-    let output = run("tdoa", &["solve", text(&file), "--prove", "--json", "-"]);
+    let output = run("tdoa", &[&["solve", text(&file), "--json", "-"], options].concat());
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!message.contains("panicked"), "{message}");
     (serde_json::from_slice(&output.stdout).unwrap_or(Value::Null), message, output.status.code())
@@ -134,4 +138,63 @@ fn every_physical_network_is_written_in_the_frame() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && said.contains(part), "{said}");
     }
+}
+
+/// Exact distances of given positions.
+fn ranges<const D: usize>(receivers: &[[f64; D]], transmitters: &[[f64; D]]) -> String {
+    let distance = |r: &[f64; D], s: &[f64; D]| r.iter().zip(s).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    let row = |r: &[f64; D]| transmitters.iter().map(|s| format!("{:?}", distance(r, s))).collect::<Vec<_>>().join(",");
+    receivers.iter().map(|r| row(r) + "\n").collect()
+}
+
+/// Networks of the smallest sizes by their ranges alone: the true one is among those listed, and roots are as many as theory says.
+#[test]
+fn ranges_of_the_smallest_sizes() {
+    let places =
+        [[0.0, 0.0, 0.2], [3.1, 0.4, 1.9], [1.2, 2.7, 0.6], [4.4, 3.3, -1.1], [-0.8, 1.9, 2.3], [2.5, -2.6, 1.4]];
+    let others =
+        [[0.3, 2.1, 1.0], [4.0, 0.7, -0.4], [2.2, -1.9, 2.8], [1.6, 3.9, 0.1], [-1.5, -0.9, 1.7], [3.3, 1.5, 3.1]];
+    let flat = |p: &[f64; 3]| [p[0], p[1]];
+    let in_plane = ranges(&places.each_ref().map(flat)[..3], &others.each_ref().map(flat)[..3]);
+    let cases = [
+        ("2", "3r/3s", 8, in_plane),
+        ("3", "4r/6s", 38, ranges(&places[..4], &others)),
+        ("3", "6r/4s", 38, ranges(&places, &others[..4])),
+        ("3", "5r/5s", 42, ranges(&places[..5], &others[..5])),
+    ];
+    for (dimensions, size, roots, table) in cases {
+        let (json, message, status) = solve_with(&table, &["--ranges", "--dimensions", dimensions, "--prove"]);
+        assert_eq!(status, Some(0), "{size}: {message}");
+        assert_eq!((&json["solver"], &json["emissions"]), (&Value::from(size), &Value::from("known")));
+        assert_eq!((&json["counts"]["complex"], &json["proofs"]["proved"]), (&roots.into(), &roots.into()), "{size}");
+        let number = |value: &Value| value.as_f64().unwrap();
+        let apart = |a: &Value, b: &Value| {
+            let pairs = a.as_array().unwrap().iter().zip(b.as_array().unwrap());
+            pairs.map(|(a, b)| (number(a) - number(b)).powi(2)).sum::<f64>().sqrt()
+        };
+        let solutions = json["solutions"].as_array().unwrap();
+        let plane = dimensions == "2";
+        let between = |i: usize| {
+            let [a, b] = [places[i], places[0]].map(|p| if plane { [p[0], p[1], 0.0] } else { p });
+            a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        let is_true = |s: &&Value| {
+            let receivers = s["receivers"].as_array().unwrap();
+            receivers.iter().enumerate().all(|(i, r)| (apart(r, &receivers[0]) - between(i)).abs() < 1e-8)
+        };
+        let truth = solutions.iter().find(is_true).unwrap_or_else(|| panic!("{size}: {json}"));
+        assert!(number(&truth["residual"]) < 1e-12 && truth["offsets"].as_array().unwrap().iter().all(|o| *o == 0.0));
+    }
+}
+
+#[test]
+fn what_is_no_table_of_ranges_is_said() {
+    let all = [[0.3, 2.1, 1.0], [4.0, 0.7, -0.4], [2.2, -1.9, 2.8], [1.6, 3.9, 0.1], [-1.5, -0.9, 1.7]];
+    let small = ranges(&all[..4], &all);
+    let (_, message, status) = solve_with(&small, &["--ranges", "--dimensions", "3"]);
+    assert_eq!(status, Some(1), "{message}");
+    assert!(message.contains("6 receivers with 4 transmitters, 5 with 5, and 4 with 6"), "{message}");
+    let (_, message, status) = solve_with("1,2,3\n2,-1.5,2\n3,1,2.5\n", &["--ranges"]);
+    assert_eq!(status, Some(1), "{message}");
+    assert!(message.contains("the range of receiver r2 and transmitter s2 is negative (-1.5 m)"), "{message}");
 }

@@ -10,24 +10,42 @@ fn measured(receivers: usize, transmitters: usize) -> Pseudoranges {
 fn smallest_sizes_are_the_named_ones() {
     // From the excess formula: (m-3)(n-2) - 3.
     for (m, n) in [(6, 3), (5, 4), (4, 5), (100, 3), (4, 100)] {
-        assert!(is_solvable::<2>(m, n), "{m}r/{n}s");
-        assert_eq!(excess::<2>(m, n), (m as i64 - 3) * (n as i64 - 2) - 3);
+        assert!(is_solvable::<2>(m, n, Emissions::Unknown), "{m}r/{n}s");
+        assert_eq!(excess::<2>(m, n, Emissions::Unknown), (m as i64 - 3) * (n as i64 - 2) - 3);
     }
     for (m, n) in [(5, 3), (4, 4), (3, 100), (100, 2), (2, 2), (0, 0)] {
-        assert!(!is_solvable::<2>(m, n), "{m}r/{n}s");
+        assert!(!is_solvable::<2>(m, n, Emissions::Unknown), "{m}r/{n}s");
     }
 }
 
 #[test]
 fn smallest_sizes_in_space() {
     // (m - 4)(n - 3) >= 6.
-    assert_eq!(smallest::<2>(), "6 receivers and 3 transmitters, 5 and 4, or 4 and 5");
-    assert_eq!(smallest::<3>(), "10 receivers and 4 transmitters, 7 and 5, 6 and 6, or 5 and 9");
+    assert_eq!(smallest::<2>(Emissions::Unknown), "6 receivers and 3 transmitters, 5 and 4, or 4 and 5");
+    assert_eq!(smallest::<3>(Emissions::Unknown), "10 receivers and 4 transmitters, 7 and 5, 6 and 6, or 5 and 9");
     for (m, n) in [(9, 4), (6, 5), (5, 8), (4, 100), (100, 3)] {
         let error = usable::<3>(&measured(m, n)).unwrap_err().to_string();
         assert!(error.contains("in space are 10 receivers and 4 transmitters"), "{error}");
     }
     assert!(usable::<3>(&measured(5, 9)).is_ok());
+}
+
+#[test]
+fn smallest_sizes_of_ranges() {
+    // (m - 2)(n - 2) >= 1 in the plane, (m - 3)(n - 3) >= 3 in space.
+    assert_eq!(smallest::<2>(Emissions::Known), "3 receivers and 3 transmitters");
+    assert_eq!(smallest::<3>(Emissions::Known), "6 receivers and 4 transmitters, 5 and 5, or 4 and 6");
+    let ranges = |m: usize, n: usize| measured(m, n).with_emissions(Emissions::Known);
+    assert!(usable::<2>(&ranges(3, 3)).is_ok());
+    for (m, n) in [(4, 6), (5, 5), (6, 4)] {
+        assert!(usable::<3>(&ranges(m, n)).is_ok());
+    }
+    for (m, n) in [(3, 100), (100, 3), (4, 5), (5, 4)] {
+        let error = usable::<3>(&ranges(m, n)).unwrap_err().to_string();
+        assert!(error.contains("in space are 6 receivers and 4 transmitters, 5 and 5, or 4 and 6"), "{error}");
+    }
+    let error = usable::<3>(&ranges(5, 4)).unwrap_err().to_string();
+    assert!(error.contains("add 1 receiver or 1 transmitter"), "{error}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What a matrix must satisfy before it is solved.
 
 use super::error::MinimalError;
-use crate::degeneracy::is_solvable;
+use crate::clocks::Emissions;
+use crate::degeneracy::{is_solvable, of_transmitter};
 use crate::duplicates::{constant_difference, rounding};
 use crate::pseudoranges::Pseudoranges;
 
@@ -12,10 +13,12 @@ const MAX_MEASUREMENTS: usize = 5_000;
 /// Refuses sizes that cannot be solved, missing measurements and nodes that coincide.
 pub(super) fn check<const D: usize>(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let (constraints, unknowns) = (m * n, (D * m + (D + 1) * n).saturating_sub(D * (D + 1) / 2));
-    if !is_solvable::<D>(m, n) {
+    let emissions = measured.emissions();
+    let constraints = m * n;
+    if !is_solvable::<D>(m, n, emissions) {
+        let unknowns = (D * m + of_transmitter::<D>(emissions) * n).saturating_sub(D * (D + 1) / 2);
         let configuration = measured.configuration();
-        return Err(MinimalError::Underdetermined { dimensions: D, configuration, constraints, unknowns });
+        return Err(MinimalError::Underdetermined { dimensions: D, emissions, configuration, constraints, unknowns });
     }
     if constraints > MAX_MEASUREMENTS {
         return Err(MinimalError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
@@ -23,7 +26,7 @@ pub(super) fn check<const D: usize>(measured: &Pseudoranges) -> Result<(), Minim
     check_nodes(measured)
 }
 
-/// Refuses missing measurements, and nodes that coincide.
+/// Refuses missing measurements, negative ranges, and nodes that coincide.
 pub(super) fn check_nodes(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     for i in 0..m {
@@ -40,9 +43,17 @@ pub(super) fn check_nodes(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let f = |i: usize, j: usize| values[i * n + j];
     let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     let tolerance = rounding(largest);
+    let are_ranges = measured.emissions() == Emissions::Known;
+    let negative = |&(_, _, value): &(usize, usize, &f64)| are_ranges && *value < 0.0;
+    if let Some((i, j, &value)) = measured.cells().iter().find(negative) {
+        let (receiver, transmitter) = (measured.receiver_names()[i].clone(), measured.transmitter_names()[j].clone());
+        return Err(MinimalError::NegativeRange { receiver, transmitter, value });
+    }
+    // Ranges that differ by a constant are those of nodes apart.
+    let are_same = |constant: f64| !are_ranges || constant.abs() <= tolerance;
     for i in 0..m {
         for k in i + 1..m {
-            if constant_difference((0..n).map(|j| (f(k, j), f(i, j))), tolerance).is_some() {
+            if constant_difference((0..n).map(|j| (f(k, j), f(i, j))), tolerance).is_some_and(are_same) {
                 let names = measured.receiver_names();
                 return Err(MinimalError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
             }
@@ -50,7 +61,7 @@ pub(super) fn check_nodes(measured: &Pseudoranges) -> Result<(), MinimalError> {
     }
     for j in 0..n {
         for k in j + 1..n {
-            if constant_difference((0..m).map(|i| (f(i, k), f(i, j))), tolerance).is_some() {
+            if constant_difference((0..m).map(|i| (f(i, k), f(i, j))), tolerance).is_some_and(are_same) {
                 let names = measured.transmitter_names();
                 return Err(MinimalError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
             }

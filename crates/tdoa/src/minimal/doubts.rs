@@ -63,6 +63,35 @@ pub(super) fn warnings_in_space(
     warnings
 }
 
+/// What there is to say of the networks of ranges, and of the paths to them.
+pub(super) fn warnings_of_ranges<const D: usize>(
+    measured: &Pseudoranges,
+    paths: &PathCounts,
+    candidates: &[Candidate<D>],
+    options: &MinimalOptions,
+) -> Vec<MinimalWarning> {
+    let mut warnings = Vec::new();
+    // No end of a path is at infinity for generic ranges.
+    let lost = paths.failed + paths.at_infinity;
+    if lost > 0 {
+        warnings.push(MinimalWarning::PathsLost { lost, tracked: paths.tracked });
+    }
+    let tolerance = allowed(measured, options);
+    if let Some(best) = candidates.first().filter(|best| best.residual > tolerance) {
+        warnings.push(MinimalWarning::NotExplained { residual: best.residual, tolerance });
+    }
+    for kind in [NodeKind::Receivers, NodeKind::Transmitters] {
+        if candidates.iter().any(|c| flatness(kind.positions(&c.network)) < FLAT) {
+            let names = kind.names(measured);
+            warnings.push(match D {
+                2 => MinimalWarning::NearlyInOneLine { kind, names },
+                _ => MinimalWarning::NearlyInOnePlane { kind, names },
+            });
+        }
+    }
+    warnings
+}
+
 /// Residuals up to this, in metres, are the noise that the options allow, or rounding.
 pub(super) fn allowed(measured: &Pseudoranges, options: &MinimalOptions) -> f64 {
     let largest = measured.cells().values().iter().fold(0.0f64, |a, v| a.max(v.abs()));

@@ -13,6 +13,7 @@ use super::real::real_root;
 use super::recharted::Recharted;
 use super::scratch;
 use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
+use crate::clocks::Emissions;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 use hc::family::{Fibre, FibreTracker};
@@ -40,6 +41,7 @@ pub(crate) struct Engine<F: Formulation, const D: usize = 2> {
     roots: RootMemory<F, D>,
     data: Normalised,
     /// The parameters of the last call.
+    given: Vec<f64>,
     target: Vec<Complex64>,
 }
 
@@ -51,7 +53,11 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         let make = if F::MANY { FibreTracker::on_all_threads } else { FibreTracker::new };
         let finder = RootFinder {
             tracker: make(F::system(), Recharted::default(), &stored),
-            nearest: Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS),
+            nearest: if F::RANGES {
+                Nearest::new(stored, 0, 0)
+            } else {
+                Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS)
+            },
             start,
             from_scratch: None,
         };
@@ -61,7 +67,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
             squares: LeastSquares::default(),
             polisher: NetworkPolisher::default(),
         };
-        Engine { finder, roots, data: Normalised::default(), target: Vec::new() }
+        Engine { finder, roots, data: Normalised::default(), given: Vec::new(), target: Vec::new() }
     }
 
     /// Every network that explains a matrix of the formulation's size that has passed the checks,
@@ -76,13 +82,25 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
     ) -> Result<MinimalSolution<D>, MinimalError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
-        self.data.take_in_order(measured, &self.finder.nearest.orders(measured));
+        assert_eq!(measured.emissions() == Emissions::Known, F::RANGES, "kind of measurements");
+        let orders = F::orders(measured).unwrap_or_else(|| self.finder.nearest.orders(measured));
+        self.data.take_in_order(measured, &orders);
+        self.given.clear();
+        F::given(&self.data, &mut self.given);
         self.target.clear();
-        self.target.extend(self.data.parameters().iter().map(|&f| Complex64::from(f)));
-        let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
+        self.target.extend(self.given.iter().map(|&f| Complex64::from(f)));
+        let (data, given, target, roots) = (&self.data, &self.given[..], &self.target[..], &mut self.roots);
         let candidates = Vec::with_capacity(CANDIDATES);
-        let mut found =
-            RootNetworks::<F, D> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
+        let mut found = RootNetworks::<F, D> {
+            measured,
+            data,
+            options,
+            given,
+            target,
+            roots,
+            counts: RootCounts::default(),
+            candidates,
+        };
         self.finder.tracker.set_monitor(monitor);
         self.finder.from_scratch = None;
         let (paths, stopped_early) = match options.start {
@@ -91,8 +109,16 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         };
         let RootNetworks { counts, mut candidates, .. } = found;
         rank(&mut candidates);
-        let (configuration, warnings) = (measured.configuration(), Vec::new());
-        Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, stopped_early, warnings, candidates })
+        Ok(MinimalSolution {
+            emissions: Emissions::of_ranges(F::RANGES),
+            configuration: measured.configuration(),
+            solver: F::NAME,
+            paths,
+            counts,
+            stopped_early,
+            warnings: Vec::new(),
+            candidates,
+        })
     }
 
     /// The records of the paths of the last call.
@@ -135,7 +161,7 @@ impl<F: Formulation> RootFinder<F> {
         let attempts = 1 + options.paths.retries as usize / 2;
         for (attempt, turn) in TURNS.into_iter().take(attempts).enumerate() {
             retracked += if attempt > 0 { self.nearest.stored().len() } else { 0 };
-            self.nearest.turn(target, turn, F::WEIGHTS, &mut self.start);
+            self.nearest.turn(target, turn, F::SCALED, F::WEIGHTS, &mut self.start);
             let in_parts = attempt == 0 && options.first_under.is_some();
             let size = if in_parts { PART } else { self.start.len() };
             let enough = |part: &PathSet| in_parts && found.fits_after(part);
@@ -218,6 +244,7 @@ struct RootNetworks<'a, F: Formulation, const D: usize> {
     measured: &'a Pseudoranges,
     data: &'a Normalised,
     options: &'a MinimalOptions,
+    given: &'a [f64],
     target: &'a [Complex64],
     roots: &'a mut RootMemory<F, D>,
     counts: RootCounts,
@@ -237,7 +264,7 @@ impl<F: FormulationIn<D>, const D: usize> RootNetworks<'_, F, D> {
             return;
         };
         self.counts.real += usize::from(real);
-        let Some(network) = F::network(self.data.parameters(), &x, squares) else { return };
+        let Some(network) = F::network(self.given, &x, squares) else { return };
         self.counts.positive_definite += usize::from(real);
         let mut candidate = self.data.candidate(network, self.options, polisher);
         self.counts.physical += usize::from(real && candidate.physical);

@@ -1,5 +1,6 @@
 //! Why a matrix cannot be solved.
 
+use crate::clocks::Emissions;
 use crate::degeneracy::list;
 use hc::poly::counted;
 use hc::tracker::OptionError;
@@ -14,16 +15,19 @@ pub enum MinimalError {
     Option(#[from] OptionError),
     /// Fewer constraints than unknowns.
     #[error(
-        "{configuration} is underdetermined{}: {} for {} (positions up to a rigid motion, offsets); the smallest solvable networks are \
+        "{configuration} is underdetermined{}: {} for {} (positions up to a rigid motion{}); the smallest solvable networks are \
          {}",
         if *.dimensions == 2 { "" } else { " in space" },
-        counted(*.constraints, "measurement"),
+        counted(*.constraints, if *.emissions == Emissions::Known { "range" } else { "measurement" }),
         counted(*.unknowns, "unknown"),
-        smallest(*.dimensions)
+        if *.emissions == Emissions::Known { "" } else { ", offsets" },
+        smallest(*.dimensions, *.emissions)
     )]
     Underdetermined {
         /// 2 in the plane, 3 in space.
         dimensions: usize,
+        /// Whether measurements are ranges.
+        emissions: Emissions,
         /// Size, such as `4r/4s`.
         configuration: String,
         /// Number of measurements.
@@ -45,7 +49,9 @@ pub enum MinimalError {
     #[error("the polyhedral start system: {0}")]
     Polyhedral(String),
     /// A start that the size does not have.
-    #[error("{configuration} in space is solved from stored solutions alone; leave out the polyhedral start")]
+    #[error(
+        "{configuration} in space, and of ranges, is solved from stored solutions alone; leave out the polyhedral start"
+    )]
     StoredOnly {
         /// Size, such as `7r/5s`.
         configuration: String,
@@ -62,6 +68,25 @@ pub enum MinimalError {
         receiver: String,
         /// Name of the transmitter.
         transmitter: String,
+    },
+    /// Ranges with a constant that is not known.
+    #[error(
+        "ranges with one unknown constant are not solved exactly: use `calibrate`, or leave the emissions unknown, so that every \
+         transmitter has an offset"
+    )]
+    OneConstant,
+    /// A range that is none.
+    #[error(
+        "the range of receiver {receiver} and transmitter {transmitter} is negative ({value} m): distances are positive; \
+         leave out that these are ranges if every transmitter has an offset"
+    )]
+    NegativeRange {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+        /// The range, metres.
+        value: f64,
     },
     /// A network to start from that is not one of the matrix.
     #[error(
@@ -105,6 +130,12 @@ pub enum MinimalError {
          are on is not determined in space; move a node of each kind off it, or if all nodes lie in one plane, solve in the plane"
     )]
     InOnePlane,
+    /// Nodes in the plane, of which ranges are known, that lie in one line.
+    #[error(
+        "all receivers or all transmitters lie in one line, as far as the ranges tell: which side of it the other nodes are on is not \
+         determined; move a node of each kind off it"
+    )]
+    InOneLine,
     /// Four of five transmitters in space that lie in one plane, or three in one line.
     #[error(
         "transmitters {} lie in one {}, as far as the measurements tell: linear equations in space need five transmitters of which no four \
@@ -130,8 +161,10 @@ pub enum MinimalError {
 }
 
 /// The smallest solvable sizes, in words.
-fn smallest(dimensions: usize) -> &'static str {
+fn smallest(dimensions: usize, emissions: Emissions) -> &'static str {
     match dimensions {
+        2 if emissions == Emissions::Known => "3 receivers with 3 transmitters",
+        3 if emissions == Emissions::Known => "6 receivers with 4 transmitters, 5 with 5, and 4 with 6",
         2 => "6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
         _ => "10 receivers with 4 transmitters, 7 with 5, 6 with 6, and 5 with 9",
     }

@@ -23,6 +23,15 @@
 //! | 6r/6s, 6r/7s | Gram matrix of three receivers | 3920 |
 //! | 10r/4s, and more receivers | the dual equations on four transmitters | 6148 |
 //!
+//! Ranges, where [`MinimalOptions::emissions`] says that measurements are these:
+//!
+//! | size | method | paths |
+//! |---|---|---|
+//! | 3r/3s in the plane, and more of both | Gram matrix of the receivers | 8 |
+//! | 5r/5s in space, and more of both | Gram matrix of four receivers | 42 |
+//! | 4r/6s in space, and more transmitters | Gram matrix of the receivers | 38 |
+//! | 6r/4s in space, and more receivers | the same with roles exchanged | 38 |
+//!
 //! A solver in the plane that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
 //! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can
@@ -45,6 +54,7 @@ mod orders;
 mod planar;
 mod polish;
 mod proofs;
+mod ranges;
 mod real;
 mod recharted;
 mod scratch;

@@ -37,7 +37,7 @@ struct Best {
 }
 
 impl Nearest {
-    /// The stored fibre of a problem with these nodes.
+    /// The stored fibre of a problem with these nodes; none where their order is given.
     pub(crate) fn new(stored: Fibre, receivers: usize, transmitters: usize) -> Self {
         let by_receivers = receivers >= transmitters;
         let (long, short) = (receivers.max(transmitters), receivers.min(transmitters));
@@ -133,21 +133,22 @@ impl Nearest {
     }
 
     /// The number of size one by which the stored measurements come nearest to the data `target`.
-    fn towards(&self, target: &[Complex64]) -> Complex64 {
-        let pairs = self.stored.parameters.iter().zip(target);
+    fn towards(&self, target: &[Complex64], scaled: usize) -> Complex64 {
+        let pairs = self.stored.parameters.iter().zip(target).take(scaled);
         let sum: Complex64 = pairs.map(|(stored, data)| stored.conj() * data).sum();
         if sum.norm() > 0.0 { sum / sum.norm() } else { Complex64::new(1.0, 0.0) }
     }
 
     /// Turns the stored fibre towards the data `target` and then by `turn` (radians) away again; a turn gives
-    /// other paths to the same ends. The fibre goes into `moved`; `weights` says by which power of the unit of
-    /// length each unknown grows.
-    pub(crate) fn turn(&self, target: &[Complex64], turn: f64, weights: &[i32], moved: &mut Fibre) {
+    /// other paths to the same ends. The fibre goes into `moved`; `scaled` is the number of parameters that grow with
+    /// the unit of length, and `weights` says by which power of it each unknown grows.
+    pub(crate) fn turn(&self, target: &[Complex64], turn: f64, scaled: usize, weights: &[i32], moved: &mut Fibre) {
         let stored = &self.stored;
-        let factor = self.towards(target) * Complex64::from_polar(1.0, turn);
+        let factor = self.towards(target, scaled) * Complex64::from_polar(1.0, turn);
         moved.dimension = stored.dimension;
         moved.parameters.clear();
-        moved.parameters.extend(stored.parameters.iter().map(|f| factor * f));
+        moved.parameters.extend(stored.parameters.iter().take(scaled).map(|f| factor * f));
+        moved.parameters.extend(stored.parameters.iter().skip(scaled));
         let powers: SmallVec<[Complex64; 8]> = weights.iter().map(|&w| factor.powi(w)).collect();
         moved.solutions.clear();
         moved.solutions.extend(stored.solutions.iter().enumerate().map(|(k, x)| x * powers[k % powers.len()]));
@@ -184,7 +185,7 @@ pub fn parameters_near(fibre: &Fibre, measured: &Pseudoranges) -> Vec<Complex64>
     let mut data = Normalised::default();
     data.take_in_order(measured, &nearest.orders(measured));
     let target: Vec<Complex64> = data.parameters().iter().map(|&f| f.into()).collect();
-    let towards = nearest.towards(&target);
+    let towards = nearest.towards(&target, usize::MAX);
     target.iter().map(|f| f / towards).collect()
 }
 
@@ -194,6 +195,7 @@ mod tests {
     use crate::minimal::formulation::Formulation;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
+    use crate::minimal::ranges::{FiveFive, FourSix, Gram, ThreeThree};
     use crate::pseudoranges::Pseudoranges;
     use hc::Fibre;
     use hc::poly::{Evaluate, Isa};
@@ -208,7 +210,8 @@ mod tests {
     /// Solutions stay solutions.
     fn turned_fibres_are_fibres<F: Formulation>() {
         let stored = F::fibre();
-        let nearest = Nearest::new(stored.clone(), F::RECEIVERS, F::TRANSMITTERS);
+        let [m, n] = if F::RANGES { [0, 0] } else { [F::RECEIVERS, F::TRANSMITTERS] };
+        let nearest = Nearest::new(stored.clone(), m, n);
         let n = stored.dimension;
         let mut moved = stored.clone();
         let mut memory = F::system().memory(Isa::Portable);
@@ -216,7 +219,7 @@ mod tests {
         for seed in 0..5 {
             let target = Random::new(seed, 0).normals(stored.parameters.len());
             for turn in [0.0, 1.0] {
-                nearest.turn(&target, turn, F::WEIGHTS, &mut moved);
+                nearest.turn(&target, turn, F::SCALED, F::WEIGHTS, &mut moved);
                 for x in moved.solutions.chunks_exact(n) {
                     F::system().jacobian(&mut memory, x, &moved.parameters, &mut values, &mut jacobian);
                     for i in 0..n {
@@ -224,7 +227,9 @@ mod tests {
                         assert!(values[i].norm() < 1e-9 * scale, "{}: {:.1e}", F::NAME, values[i].norm() / scale);
                     }
                 }
-                let distance = |p: &[Complex64]| p.iter().zip(&target).map(|(a, b)| (a - b).norm_sqr()).sum::<f64>();
+                let distance = |p: &[Complex64]| {
+                    p.iter().zip(&target).map(|(a, b)| (a - b).norm_sqr()).take(F::SCALED).sum::<f64>()
+                };
                 assert!(turn > 0.0 || distance(&moved.parameters) <= distance(&stored.parameters));
             }
         }
@@ -235,6 +240,9 @@ mod tests {
         turned_fibres_are_fibres::<SixThree>();
         turned_fibres_are_fibres::<FiveFour>();
         turned_fibres_are_fibres::<FourFive>();
+        turned_fibres_are_fibres::<Gram<ThreeThree, 2>>();
+        turned_fibres_are_fibres::<Gram<FourSix, 3>>();
+        turned_fibres_are_fibres::<Gram<FiveFive, 3>>();
     }
 
     /// Data that are the stored measurements in another order, with other clocks, come back in the stored one.

@@ -4,15 +4,22 @@ use super::options::MinimalOptions;
 use super::orders::{Order, Orders};
 use super::polish::NetworkPolisher;
 use super::solution::Candidate;
+use crate::accuracy::position_error;
+use crate::clocks::Emissions;
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 use smallvec::SmallVec;
 
-/// Measurements with the nodes in some order, relative to the first receiver, in units of their own size.
+/// Networks whose offsets and positions differ by less than this share of their size are one.
+const SAME: f64 = 1e-6;
+
+/// Measurements with the nodes in some order, relative to the first receiver, in units of their own size; ranges as they
+/// are, in these units.
 #[derive(Default)]
 pub(crate) struct Normalised {
     orders: Orders,
-    /// `(f_ij - f_1j) / size`, row-major; zeros in the first row.
+    are_ranges: bool,
+    /// `(f_ij - f_1j) / size`, row-major, zeros in the first row; ranges `f_ij / size`.
     pub(crate) matrix: Vec<f64>,
     first: Vec<f64>,
     size: f64,
@@ -35,13 +42,14 @@ impl Normalised {
     pub(crate) fn take_in_order(&mut self, measured: &Pseudoranges, orders: &Orders) {
         let (f, n) = (measured.cells().values(), measured.transmitters());
         self.orders.clone_from(orders);
+        self.are_ranges = measured.emissions() == Emissions::Known;
         let Orders { receivers, transmitters } = orders;
         let cell = |i: usize, j: usize| f[receivers[i] * n + transmitters[j]];
         self.first.clear();
-        self.first.extend((0..n).map(|j| cell(0, j)));
+        self.first.extend((0..n).map(|j| if self.are_ranges { 0.0 } else { cell(0, j) }));
         self.matrix.clear();
         self.matrix.extend((0..f.len()).map(|k| cell(k / n, k % n) - self.first[k % n]));
-        let count = (f.len() - n) as f64;
+        let count = (f.len() - if self.are_ranges { 0 } else { n }) as f64;
         let size = (self.matrix.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
         for d in self.matrix.iter_mut() {
             *d /= size;
@@ -49,7 +57,7 @@ impl Normalised {
         self.size = size;
     }
 
-    /// The unit in metres: the root mean square of `f_ij - f_1j`.
+    /// The unit in metres: the root mean square of `f_ij - f_1j`, or of ranges.
     pub(crate) fn size(&self) -> f64 {
         self.size
     }
@@ -71,7 +79,8 @@ impl Normalised {
         options: &MinimalOptions,
         polisher: &mut NetworkPolisher<D>,
     ) -> Candidate<D> {
-        let condition = if options.polish { polisher.polish(&self.matrix, &mut network) } else { f64::NAN };
+        let condition =
+            if options.polish { polisher.polish(&self.matrix, self.are_ranges, &mut network) } else { f64::NAN };
         let n = self.transmitters();
         let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);
         let residuals =
@@ -126,4 +135,22 @@ fn give_back<T: Copy>(nodes: &mut [T], order: &Order) {
 /// Physical candidates first, then by residual.
 pub(crate) fn rank<const D: usize>(candidates: &mut [Candidate<D>]) {
     candidates.sort_unstable_by(|a, b| b.physical.cmp(&a.physical).then(a.residual.total_cmp(&b.residual)));
+}
+
+/// Leaves out networks that the refinement led to one before.
+pub(crate) fn leave_out_copies<const D: usize>(candidates: &mut Vec<Candidate<D>>) {
+    let mut kept: Vec<Candidate<D>> = Vec::new();
+    for candidate in candidates.drain(..) {
+        let near = |other: &Candidate<D>| {
+            let pairs = other.network.offsets.iter().zip(&candidate.network.offsets);
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // Mirror images of single nodes have the same offsets.
+            let places = || position_error(&other.network, &candidate.network);
+            apart < SAME * candidate.network.size() && places() < SAME
+        };
+        if !kept.iter().any(near) {
+            kept.push(candidate);
+        }
+    }
+    *candidates = kept;
 }

@@ -1,11 +1,15 @@
 //! Settings of the minimal solvers.
 
+use crate::clocks::Emissions;
 use hc::family::FibreOptions;
 
 /// Settings of the minimal solvers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MinimalOptions {
+    /// What is known of the times at which transmitters send. With [`Emissions::Known`] measurements are ranges, and
+    /// offsets are zero. Default [`Emissions::Unknown`].
+    pub emissions: Emissions,
     /// How far below zero a distance f_ij - o_j may lie if a candidate is to count as physical,
     /// relative to the size of the data (root mean square of f_ij - f_1j). Default 1e-6; for noisy
     /// data, use the noise. In space residuals (root mean square) above it make a warning.
@@ -17,7 +21,7 @@ pub struct MinimalOptions {
     pub polish: bool,
     /// Stops at the first physical candidate whose residual (root mean square, metres) is below
     /// this, for callers in a hurry. Only sizes that are solved by paths without a smaller part
-    /// (6r/3s, 5r/4s, 4r/5s, 5r/6s; in space 8r/5s, 7r/5s, 6r/6s, 10r/4s) stop early. In 6r/3s and
+    /// (6r/3s, 5r/4s, 4r/5s, 5r/6s; in space 8r/5s, 7r/5s, 6r/6s, 10r/4s; all smallest of ranges) stop early. In 6r/3s and
     /// 4r/5s, and in 7r/5s, 6r/6s and 10r/4s in space, every candidate fits exactly; the first
     /// physical one is then returned, which need not be the true one. Default `None`: all networks.
     pub first_under: Option<f64>,
@@ -55,6 +59,7 @@ impl Default for MinimalOptions {
         paths.tracker.max_steps = 200;
         paths.tracker.quick = true;
         MinimalOptions {
+            emissions: Emissions::Unknown,
             tolerance: 1e-6,
             near_real: 0.0,
             polish: true,

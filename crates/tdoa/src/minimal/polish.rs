@@ -12,17 +12,20 @@ const MAX_ITERATIONS: usize = 8;
 pub(crate) struct NetworkPolisher<const D: usize = 2> {
     squares: LeastSquares,
     signs: Vec<f64>,
+    /// Whether offsets are zero and stay so.
+    are_ranges: bool,
     next: Network<D>,
 }
 
 impl<const D: usize> NetworkPolisher<D> {
     /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as
     /// they are at the start, and returns the condition number of that problem (columns of unit
-    /// length, rigid motions excluded).
+    /// length, rigid motions excluded). Offsets stay as they are where `f` are ranges.
     ///
     /// `f` is row-major, receivers in rows. The network stays as it is where a step would not bring
     /// it nearer.
-    pub(crate) fn polish(&mut self, f: &[f64], network: &mut Network<D>) -> f64 {
+    pub(crate) fn polish(&mut self, f: &[f64], are_ranges: bool, network: &mut Network<D>) -> f64 {
+        self.are_ranges = are_ranges;
         let n = network.transmitters.len();
         self.signs.clear();
         self.signs.extend((0..f.len()).map(|k| if f[k] < network.offsets[k % n] { -1.0 } else { 1.0 }));
@@ -55,7 +58,8 @@ impl<const D: usize> NetworkPolisher<D> {
     /// position and rotation fixed.
     fn linearise(&mut self, f: &[f64], network: &Network<D>) {
         let (m, n) = (network.receivers.len(), network.transmitters.len());
-        let (rows, unknowns) = (m * n + D * (D + 1) / 2, D * m + (D + 1) * n);
+        let offsets = if self.are_ranges { 0 } else { n };
+        let (rows, unknowns) = (m * n + D * (D + 1) / 2, D * (m + n) + offsets);
         let (jacobian, values) = self.squares.start(rows, unknowns);
         let at = |row: usize, column: usize| column * rows + row;
         for i in 0..m {
@@ -67,7 +71,9 @@ impl<const D: usize> NetworkPolisher<D> {
                     jacobian[at(row, D * i + k)] = u;
                     jacobian[at(row, D * (m + j) + k)] = -u;
                 }
-                jacobian[at(row, D * (m + n) + j)] = sign;
+                if !self.are_ranges {
+                    jacobian[at(row, D * (m + n) + j)] = sign;
+                }
                 values[row] = residual(f, &self.signs, network, row);
             }
         }
@@ -122,6 +128,8 @@ fn move_by<const D: usize>(step: &[f64], network: &Network<D>, next: &mut Networ
         for k in 0..D {
             next.transmitters[j][k] -= step[D * (m + j) + k];
         }
-        next.offsets[j] -= step[D * (m + n) + j];
+        if let Some(step) = step.get(D * (m + n) + j) {
+            next.offsets[j] -= step;
+        }
     }
 }

@@ -35,6 +35,7 @@ mod tests {
     use crate::minimal::formulation::Formulation;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
+    use crate::minimal::ranges::{FiveFive, FourSix, Gram, ThreeThree};
     use crate::minimal::spatial::{Dual, EightFive, SevenFive, SixSix, TenFour};
     use hc::poly::{Evaluate, Isa};
     use num_complex::Complex64;
@@ -67,6 +68,13 @@ mod tests {
         solutions_stay_solutions::<SixThree>(1e-9);
         solutions_stay_solutions::<FiveFour>(1e-9);
         solutions_stay_solutions::<FourFive>(1e-9);
+    }
+
+    #[test]
+    fn charts_of_the_fibres_of_ranges() {
+        solutions_stay_solutions::<Gram<ThreeThree, 2>>(1e-9);
+        solutions_stay_solutions::<Gram<FourSix, 3>>(1e-9);
+        solutions_stay_solutions::<Gram<FiveFive, 3>>(1e-9);
     }
 
     /// The unknowns of 6r/6s reach 6e4, next to others of size one, and lose a digit more than the others.

@@ -1,6 +1,7 @@
 //! The result of a minimal solver.
 
 use super::warning::MinimalWarning;
+use crate::clocks::Emissions;
 use crate::network::Network;
 pub use hc::family::PathCounts;
 use serde::Serialize;
@@ -37,6 +38,8 @@ pub struct RootCounts {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(bound = "[f64; D]: Serialize")]
 pub struct MinimalSolution<const D: usize = 2> {
+    /// Whether the measurements were taken for ranges.
+    pub emissions: Emissions,
     /// The size of the matrix, such as `6r/3s`.
     pub configuration: String,
     /// The solver that was used, such as `6r/3s` on a larger matrix.

@@ -16,8 +16,10 @@ use super::planar::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::planar::three::{FiveFour, SixThree};
 use super::polish::NetworkPolisher;
 use super::proofs::RootProofs;
+use super::ranges;
 use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use super::subset::{self, Subset};
+use crate::clocks::Emissions;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 use hc::tracker::PathResult;
@@ -84,9 +86,11 @@ impl Solver {
     /// 7r/4s linearly. Larger sizes are solved through the best spread part of one of these sizes:
     /// its candidates are extended to all nodes and refined over all measurements.
     ///
+    /// Ranges ([`MinimalOptions::emissions`]) of three receivers and transmitters or more are solved through 3r/3s.
+    ///
     /// # Errors
-    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a
-    /// setting of the tracker is out of range.
+    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, a
+    /// setting of the tracker is out of range, or ranges are negative or those of nodes in one line.
     pub fn solve(
         &mut self,
         measured: &Pseudoranges,
@@ -106,6 +110,11 @@ impl Solver {
         monitor: &Monitor,
     ) -> Result<MinimalSolution, MinimalError> {
         options.paths.validate()?;
+        match options.emissions {
+            Emissions::Unknown => {}
+            Emissions::Known => return ranges::solve(&mut self.engines, &ranges::IN_PLANE, measured, options, monitor),
+            Emissions::Constant => return Err(MinimalError::OneConstant),
+        }
         let (m, n) = (measured.receivers(), measured.transmitters());
         check::<2>(measured)?;
         let method = Method::pick(m, n);
@@ -229,6 +238,7 @@ fn seven_four(measured: &Pseudoranges, options: &MinimalOptions) -> MinimalSolut
         }
     }
     let solution = MinimalSolution {
+        emissions: Emissions::Unknown,
         configuration: selected.configuration(),
         solver: "7r/4s",
         paths: PathCounts::default(),

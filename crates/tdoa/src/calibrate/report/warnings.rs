@@ -11,7 +11,7 @@ use crate::calibrate::search::deviation::typical_deviation;
 use crate::calibrate::search::one_sided::LEAST_REDUNDANCY;
 use crate::calibrate::search::submaps::overlap;
 use crate::calibrate::state::State;
-use crate::degeneracy::{least_per_transmitter, list, space};
+use crate::degeneracy::{list, of_transmitter, space};
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
@@ -209,11 +209,12 @@ pub(crate) fn warn_of_nodes<const D: usize>(
             ));
         }
     }
+    let least = of_transmitter::<D>(measured.emissions()) + 1;
     let astray: Vec<usize> = (0..measured.transmitters())
         .filter(|&j| {
             let all = (0..measured.receivers()).filter(|&i| measured.get(i, j).is_some()).count();
             let good = kept.of_transmitter(j).len();
-            good < least_per_transmitter::<D>() || 2 * good < all
+            good < least || 2 * good < all
         })
         .collect();
     if !astray.is_empty() {

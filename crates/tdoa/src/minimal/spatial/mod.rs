@@ -22,7 +22,7 @@
 //!     [0.1, 2.6, 0.5], [3.9, 2.2, 0.8], [1.8, 4.9, 2.2], [2.0, 1.0, 1.3],
 //! ];
 //! let transmitters = vec![[1.0, 1.0, 1.0], [3.0, 1.5, 0.4], [2.5, 4.0, 1.7], [0.5, 3.0, 0.9], [1.7, 2.2, 2.2]];
-//! let truth = Network { receivers, transmitters, offsets: vec![0.0, 7.0, -3.0, 12.0, 0.5] };
+//! let truth = Network::new(receivers, transmitters, vec![0.0, 7.0, -3.0, 12.0, 0.5]);
 //! let measured = Pseudoranges::new(9, 5, truth.pseudoranges())?;
 //!
 //! let found = spatial::solve(&measured, &MinimalOptions::default())?;

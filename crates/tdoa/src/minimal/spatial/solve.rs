@@ -6,7 +6,7 @@ use super::gram::SixSix;
 use super::offsets::{DEGENERATE, offsets};
 use super::planes::{are_flat, in_one_plane};
 use super::rank::{Found, seven_six, six_eight};
-use crate::accuracy::position_error;
+use crate::clocks::Emissions;
 use crate::duplicates::rounding;
 use crate::minimal::check::check;
 use crate::minimal::doubts::{allowed, warnings_in_space};
@@ -15,18 +15,17 @@ use crate::minimal::engines::{Engines, PathSolver};
 use crate::minimal::error::MinimalError;
 use crate::minimal::formulation::FormulationIn;
 use crate::minimal::larger::candidates_of_whole;
-use crate::minimal::normalised::rank;
+use crate::minimal::normalised::{leave_out_copies, rank};
 use crate::minimal::options::{MinimalOptions, MinimalStart};
 use crate::minimal::proofs::RootProofs;
-use crate::minimal::solution::{Candidate, MinimalSolution, RootCounts};
+use crate::minimal::ranges;
+use crate::minimal::solution::{MinimalSolution, RootCounts};
 use crate::minimal::subset::{Subset, combinations, ranked};
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
 /// Parts of the measurements that a method without paths tries at most.
 const TRIED: usize = 4;
-/// Networks whose offsets and positions differ by less than this share of their size are one.
-const SAME: f64 = 1e-6;
 /// Receivers from which on equations that are linear show four transmitters in one plane.
 const SHOWING: usize = 8;
 
@@ -51,6 +50,8 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 /// Of smaller sizes a part of eight receivers and five transmitters, seven and five, six and six, or ten and
 /// four is solved by homotopy continuation from a stored fibre, on the threads of the current rayon pool, and
 /// extended in the same way. The equations are those of the paper, one dimension more.
+///
+/// Ranges ([`MinimalOptions::emissions`]) are solved through 5r/5s, 4r/6s or 6r/4s, with 42 or 38 paths.
 ///
 /// Measurements with more errors than `tolerance` allows make a warning: the network is then not to be
 /// relied upon, and need not be that of least squares.
@@ -94,6 +95,11 @@ impl Solver {
         let engines = &mut self.engines;
         engines.none_used();
         options.paths.validate()?;
+        match options.emissions {
+            Emissions::Unknown => {}
+            Emissions::Known => return ranges::solve(engines, &ranges::IN_SPACE, measured, options, monitor),
+            Emissions::Constant => return Err(MinimalError::OneConstant),
+        }
         check::<3>(measured)?;
         let fits = |method: &&Method| {
             measured.receivers() >= method.receivers && measured.transmitters() >= method.transmitters
@@ -172,6 +178,7 @@ fn among(
             let warnings = warnings_in_space(measured, &found.paths, first, options);
             rank(&mut candidates);
             let solution = MinimalSolution {
+                emissions: Emissions::Unknown,
                 configuration: measured.configuration(),
                 solver: method.name,
                 paths: found.paths,
@@ -265,24 +272,6 @@ where
         counts: solution.counts,
         stopped_early: solution.stopped_early,
     })
-}
-
-/// Leaves out networks that the refinement led to one before.
-fn leave_out_copies(candidates: &mut Vec<Candidate<3>>) {
-    let mut kept: Vec<Candidate<3>> = Vec::new();
-    for candidate in candidates.drain(..) {
-        let near = |other: &Candidate<3>| {
-            let pairs = other.network.offsets.iter().zip(&candidate.network.offsets);
-            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Mirror images of single nodes have the same offsets.
-            let places = || position_error(&other.network, &candidate.network);
-            apart < SAME * candidate.network.size() && places() < SAME
-        };
-        if !kept.iter().any(near) {
-            kept.push(candidate);
-        }
-    }
-    *candidates = kept;
 }
 
 /// All receivers with five transmitters each, the best conditioned ones first.
