@@ -9,6 +9,7 @@ use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 
 use crate::calibrate::search::hypotheses::{Hypotheses, generator};
+use crate::clocks::Emissions;
 use crate::duplicates::step;
 use crate::median::median;
 use crate::minimal::spatial::{self, five_transmitters};
@@ -39,6 +40,10 @@ const IN_PLANE: Shapes = Shapes { sizes: &[(6, 3), (5, 4), (4, 5)], for_a_call: 
 const LINEAR: Shapes = Shapes { sizes: &[(9, 5), (10, 5)], for_a_call: 32, calls: usize::MAX };
 /// In space with fewer nodes a subset takes a tenth of a second to some seconds, as long as the whole search.
 const BY_PATHS: Shapes = Shapes { sizes: &[(8, 5), (7, 5), (6, 6), (10, 4)], for_a_call: 1, calls: 1 };
+/// Ranges in the plane: a subset takes a tenth of a millisecond.
+const RANGES_IN_PLANE: Shapes = Shapes { sizes: &[(3, 3)], for_a_call: 4, calls: usize::MAX };
+/// Ranges in space: a subset takes some milliseconds.
+const RANGES_IN_SPACE: Shapes = Shapes { sizes: &[(5, 5), (4, 6), (6, 4)], for_a_call: 1, calls: usize::MAX };
 /// Spare measurements up to which paths are tracked in space. With three or more, random networks find all that
 /// fit. Of 60 rooms each with errors of a millimetre they listed the truth in 60 of 7r/6s (three spare), in 57 or
 /// 58 of 8r/5s, 6r/7s and 12r/4s (two), and in 47 to 56 of smaller ones; one subset more made this 58 to 60.
@@ -51,6 +56,8 @@ fn shapes<const D: usize>(measured: &Pseudoranges) -> Option<Shapes> {
     // Unknowns less the six of a rigid motion.
     let few = measured.observed() + 6 <= 3 * m + 4 * n + MOST_SPARE;
     match D {
+        2 if measured.emissions() == Emissions::Known => Some(RANGES_IN_PLANE).filter(fits),
+        3 if measured.emissions() == Emissions::Known => Some(RANGES_IN_SPACE).filter(fits),
         2 => Some(IN_PLANE).filter(fits),
         3 if fits(&LINEAR) => Some(LINEAR),
         3 if few => Some(BY_PATHS).filter(fits),
@@ -72,7 +79,8 @@ const COARSE: f64 = 1e-3;
 /// Proposes every candidate of a minimal solver, each call on one random, spread-out, completely
 /// measured subset: 6r/3s, 5r/4s or 4r/5s in the plane. In space a call proposes the networks of
 /// several subsets of 9r/5s or 10r/5s; of fewer nodes, where few measurements are spare, all networks of
-/// one subset of 8r/5s, 7r/5s, 6r/6s or 10r/4s ([`crate::minimal::spatial`]).
+/// one subset of 8r/5s, 7r/5s, 6r/6s or 10r/4s ([`crate::minimal::spatial`]). Subsets of ranges are 3r/3s in the plane,
+/// and 5r/5s, 4r/6s or 6r/4s in space.
 pub struct MinimalHypotheses {
     options: MinimalOptions,
     in_plane_solvers: Mutex<Vec<Solver>>,
@@ -130,8 +138,15 @@ impl MinimalHypotheses {
         }
     }
 
+    /// The settings for a part of the measurements.
+    fn options(&self, part: &Pseudoranges) -> MinimalOptions {
+        let are_ranges = part.emissions() == Emissions::Known;
+        MinimalOptions { emissions: Emissions::of_ranges(are_ranges), ..self.options.clone() }
+    }
+
     fn in_plane(&self, part: &Pseudoranges) -> Vec<Network> {
-        by_spare(&self.in_plane_solvers, |solver| physical(solver.solve_watched(part, &self.options, &self.monitor)))
+        let options = self.options(part);
+        by_spare(&self.in_plane_solvers, |solver| physical(solver.solve_watched(part, &options, &self.monitor)))
     }
 
     fn in_space(&self, part: &Pseudoranges) -> Vec<Network<3>> {
@@ -145,7 +160,8 @@ impl MinimalHypotheses {
     }
 
     fn by_paths(&self, part: &Pseudoranges) -> Vec<Network<3>> {
-        by_spare(&self.in_space_solvers, |solver| physical(solver.solve_watched(part, &self.options, &self.monitor)))
+        let options = self.options(part);
+        by_spare(&self.in_space_solvers, |solver| physical(solver.solve_watched(part, &options, &self.monitor)))
     }
 
     /// The subset of one call: `m` receivers and `n` transmitters, `None` if no draw is complete.
@@ -264,7 +280,40 @@ impl<const D: usize> Hypotheses<D> for MinimalHypotheses {
 #[cfg(test)]
 mod tests {
     use crate::align::align;
-    use crate::{CalibrateOptions, Layout, SimulateOptions, calibrate, simulate};
+    use crate::calibrate::{Calibrates, Dimension};
+    use crate::{CalibrateOptions, Emissions, Layout, SimulateOptions, calibrate, simulate};
+
+    /// Ranges of a smallest size are calibrated: the truth is the network or one of its alternatives.
+    fn the_truth_is_listed_of_ranges<const D: usize>(receivers: usize, transmitters: usize)
+    where
+        Dimension<D>: Calibrates<D>,
+    {
+        for seed in 0..10 {
+            let mut options = SimulateOptions::<D>::new();
+            (options.receivers, options.transmitters) = (receivers, transmitters);
+            (options.layout, options.noise, options.seed) = (Layout::Normal, 1e-6, seed);
+            options.emissions = Emissions::Known;
+            let simulation = simulate(&options).unwrap();
+            let mut options = CalibrateOptions::<D>::new();
+            (options.emissions, options.seed, options.sigma) = (Emissions::Known, seed, Some(1e-6));
+            let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+            let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
+            let errors = all.filter_map(|receivers| {
+                let placed: Option<Vec<[f64; D]>> = receivers.iter().copied().collect();
+                Some(align(&placed?, &simulation.network.receivers, false)?.rms)
+            });
+            let least = errors.fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-3, "{receivers}r/{transmitters}s, seed {seed}: {least}");
+        }
+    }
+
+    #[test]
+    fn smallest_networks_of_ranges_are_calibrated() {
+        the_truth_is_listed_of_ranges::<2>(3, 3);
+        the_truth_is_listed_of_ranges::<3>(4, 6);
+        the_truth_is_listed_of_ranges::<3>(6, 4);
+        the_truth_is_listed_of_ranges::<3>(5, 5);
+    }
 
     /// Where no measurement is spare in space, random networks alone miss the truth, of the first of these
     /// seeds with another network that passes for the only one. Exact solutions have it in any case.
