@@ -28,6 +28,7 @@ pub(crate) struct Asked {
     first_under: Option<f64>,
     dimensions: usize,
     prove: bool,
+    ranges: bool,
 }
 
 /// All networks that explain a table exactly: a dict of arrays.
@@ -42,6 +43,7 @@ pub(crate) fn solve_network<'py>(
         let mut options = MinimalOptions::default();
         options.tolerance = asked.tolerance.unwrap_or(options.tolerance);
         options.first_under = asked.first_under;
+        options.emissions = Emissions::of_ranges(asked.ranges);
         options.start = match &*asked.start {
             "stored" => MinimalStart::Stored,
             "polyhedral" => MinimalStart::Polyhedral,

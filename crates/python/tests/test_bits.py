@@ -96,6 +96,19 @@ def test_exact_networks(m, n, run_json, tmp_path):
             assert bits(float(found.conditions[k])) == bits(each["condition"])
 
 
+@pytest.mark.parametrize("d, m, n", [(2, 3, 3), (3, 4, 6), (3, 6, 4), (3, 5, 5)])
+def test_exact_networks_of_ranges(d, m, n, run_json, tmp_path):
+    made = tdoa.simulate(m, n, dimensions=d, layout="normal", ranges=True, seed=m + n)
+    expected = run_json("tdoa", "solve", written(tmp_path, made.pseudoranges), "--ranges", "--dimensions", d)
+    found = tdoa.solve(made.pseudoranges, dimensions=d, ranges=True)
+    assert expected["emissions"] == "known" and found.solver == expected["solver"] == f"{m}r/{n}s"
+    assert found.counts == expected["counts"] and len(found) == len(expected["solutions"]) > 0
+    for k, each in enumerate(expected["solutions"]):
+        for name in ("receivers", "transmitters", "offsets"):
+            assert bits(getattr(found, name)[k].tolist()) == bits(each[name])
+    assert not found.offsets.any() and found.physical.all()
+
+
 @pytest.mark.parametrize("name", ["sendra", "trinks"])
 def test_decompositions(name, run_json):
     path = ROOT / "examples/systems" / f"{name}.phc"

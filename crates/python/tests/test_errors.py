@@ -45,6 +45,10 @@ def test_tables_that_determine_nothing():
             tdoa.calibrate(table)
     with pytest.raises(hc.UndeterminedError, match="6 receivers with 3 transmitters"):
         tdoa.solve(TABLE[:3, :3])
+    with pytest.raises(hc.UndeterminedError, match="3 receivers with 3 transmitters"):
+        tdoa.solve(np.ones((2, 3)), ranges=True)
+    with pytest.raises(hc.UndeterminedError, match="the range of receiver r2 and transmitter s3 is negative"):
+        tdoa.solve([[1.0, 2.0, 2.0], [2.0, 1.0, -3.0], [2.5, 1.5, 1.0]], ranges=True)
     gap = TABLE[:6, :3].copy()
     gap[2, 1] = np.nan
     with pytest.raises(hc.UndeterminedError, match="receiver r3 did not hear transmitter s2"):

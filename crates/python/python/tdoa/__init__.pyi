@@ -207,6 +207,7 @@ def solve(
     start: Literal["stored", "polyhedral"] = "stored",
     first_under: float | None = None,
     prove: bool = False,
+    ranges: bool = False,
     names: _Names | None = None,
     threads: int | None = None,
     progress: _Progress = True,

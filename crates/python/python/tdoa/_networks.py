@@ -347,11 +347,14 @@ def solve(
     start="stored",
     first_under=None,
     prove=False,
+    ranges=False,
     names=None,
     threads=None,
     progress=True,
 ):
     """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 10r/4s, 7r/5s, 6r/6s and up.
+
+    Of ranges, 3r/3s and up, in space 6r/4s, 5r/5s, 4r/6s and up.
 
     Parameters
     ----------
@@ -368,6 +371,9 @@ def solve(
         Stops at the first physical network with a residual (metres) below this.
     prove : bool
         Proves by interval arithmetic that the complex roots at the ends of all paths exist and are distinct; see `Networks.proofs`.
+    ranges : bool
+        Whether the measurements are distances, such as two-way ranges or arrival times less known send times: transmitters have no
+        offsets, and fewer nodes are enough. None may be negative.
 
     Returns
     -------
@@ -397,6 +403,7 @@ def solve(
         "first_under": number("first_under", first_under),
         "dimensions": d,
         "prove": bool(prove),
+        "ranges": bool(ranges),
     }
     return call(_native.solve_network, given, asked, threads=threads, progress=progress, wrap=Networks)
 
