@@ -64,7 +64,7 @@ impl CalibrateSettings {
                 return Err(Failure::Input(format!("receiver_delays must be none, auto or all, not {other:?}")));
             }
         };
-        options.emissions = Emissions::of_ranges(self.ranges);
+        options.clocks.emissions = Emissions::of_ranges(self.ranges);
         options.errors = match self.errors.as_str() {
             "auto" => Errors::Auto,
             "symmetric" => Errors::Symmetric,

@@ -1,8 +1,11 @@
 //! Options of clocks.
 
-use tdoa::Emissions;
+use std::path::PathBuf;
+
+use tdoa::{Emissions, Pseudoranges, ReceiverClocks};
 
 use crate::provenance::{named, said};
+use crate::{Failure, input};
 
 /// What is known of the times at which transmitters send.
 #[derive(Clone, Copy, clap::Args)]
@@ -38,5 +41,47 @@ impl EmissionArguments {
     /// Names and values of the options.
     pub(crate) fn settings(self) -> [Option<(String, String)>; 2] {
         [named("emissions", Some(said(self.emissions))), named("ranges", self.ranges.then_some("yes"))]
+    }
+}
+
+/// What the clocks of receivers do.
+#[derive(clap::Args)]
+pub(crate) struct ReceiverClockArguments {
+    /// What the clocks of receivers do: all share one (common), each recorder was started by itself (offset), or its clock
+    /// runs fast or slow too (rate), where values are readings of that clock. Receivers are a recorder each, but for those
+    /// of --recorders and for names such as `rec1:1` and `rec1:2`, which are channels of one.
+    #[arg(long, value_enum, default_value = "common")]
+    receiver_clocks: Clock,
+    /// The recorder of each receiver: a line `receiver,recorder` each.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) recorders: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Clock {
+    Common,
+    Offset,
+    Rate,
+}
+
+impl ReceiverClockArguments {
+    pub(crate) fn receivers(&self) -> ReceiverClocks {
+        match self.receiver_clocks {
+            Clock::Common => ReceiverClocks::Common,
+            Clock::Offset => ReceiverClocks::Offset,
+            Clock::Rate => ReceiverClocks::Rate,
+        }
+    }
+
+    /// Measurements with the recorders of the file, if there is one.
+    pub(crate) fn recorded(&self, measured: Pseudoranges) -> Result<Pseudoranges, Failure> {
+        let Some(path) = &self.recorders else { return Ok(measured) };
+        measured.clone().with_recorders(input::recorders(path, &measured)?).map_err(Failure::unusable)
+    }
+
+    /// Names and values of the options.
+    pub(crate) fn settings(&self) -> [Option<(String, String)>; 2] {
+        let path = self.recorders.as_ref().map(|path| path.display().to_string());
+        [named("receiver-clocks", Some(said(self.receiver_clocks))), named("recorders", path)]
     }
 }

@@ -41,3 +41,13 @@ pub(crate) fn distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistan
     };
     read.map_err(Failure::unusable)
 }
+
+/// The recorder of each receiver of a table.
+pub(crate) fn recorders(path: &Path, measured: &Pseudoranges) -> Result<Vec<String>, Failure> {
+    let read = if is_standard(path) {
+        read::read_recorders_from(source(path)?, &name(path), measured)
+    } else {
+        read::read_recorders(path, measured)
+    };
+    read.map_err(Failure::unusable)
+}

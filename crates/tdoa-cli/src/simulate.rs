@@ -10,8 +10,8 @@ use crate::clocks::EmissionArguments;
 use crate::output;
 use crate::units::{Unit, UnitArguments};
 
-/// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv
-/// and offsets.csv.
+/// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv, offsets.csv and,
+/// where receivers have clocks of their own, clocks.csv.
 ///
 /// Lengths are metres; --units gives pseudoranges.csv in another unit, and offsets.csv a column in
 /// it.
@@ -65,9 +65,18 @@ pub(crate) struct Arguments {
     /// the first transmitter to the last one, or `move=METRES` after half of the transmitters.
     #[arg(long, value_name = "KIND=METRES")]
     fault: Option<String>,
-    /// Standard deviation of a constant delay of each receiver, metres.
+    /// Standard deviation of a constant delay of each recorder, metres: of its clock's offset.
     #[arg(long, default_value_t = 0.0)]
     delays: f64,
+    /// Standard deviation of the rates of the recorders' clocks, millionths.
+    #[arg(long, value_name = "PPM", default_value_t = 0.0)]
+    rate_sigma: f64,
+    /// Receivers that share a recorder, and so a clock.
+    #[arg(long, default_value_t = 1)]
+    channels: usize,
+    /// Has transmitters send at times that are uniform over this, metres: seconds times the speed.
+    #[arg(long, value_name = "METRES")]
+    duration: Option<f64>,
     #[command(flatten)]
     sending: EmissionArguments,
     /// Seed of the random numbers.
@@ -94,8 +103,8 @@ enum Shape {
     Grid,
 }
 
-/// What is written.
-const FILES: [&str; 4] = ["pseudoranges.csv", "receivers.csv", "transmitters.csv", "offsets.csv"];
+/// What is written; the last one where receivers have clocks of their own.
+const FILES: [&str; 5] = ["pseudoranges.csv", "receivers.csv", "transmitters.csv", "offsets.csv", "clocks.csv"];
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_directory(&arguments.output, &FILES, arguments.force)?;
@@ -130,6 +139,9 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     options.candidates = arguments.candidates;
     options.fault = arguments.fault.as_deref().map(fault).transpose()?;
     options.delays = arguments.delays;
+    options.rates = 1e-6 * arguments.rate_sigma;
+    options.channels = arguments.channels;
+    options.duration = arguments.duration;
     options.emissions = arguments.sending.emissions();
     options.seed = arguments.seed;
     let unit = unit_of(&arguments.units)?;
@@ -156,7 +168,12 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     let offsets: String = rows.map(|(name, offset)| format!("{name},{offset}{}\n", in_unit(*offset))).collect();
     let heading = unit.map_or_else(String::new, |unit| format!(",offset_{}", unit.name));
     let offsets = format!("id,offset{heading}\n{offsets}");
-    for (name, text) in FILES.iter().zip([table, receivers, transmitters, offsets]) {
+    let clocks = measured.receiver_names().iter().zip(&simulation.clocks);
+    let clocks: String = clocks.map(|(name, [offset, rate])| format!("{name},{offset},{rate}\n")).collect();
+    let clocks = format!("receiver,offset,rate\n{clocks}");
+    let with_clocks = simulation.clocks.iter().flatten().any(|x| *x != 0.0);
+    let all = [table, receivers, transmitters, offsets].into_iter().chain(with_clocks.then_some(clocks));
+    for (name, text) in FILES.iter().zip(all) {
         output::file(&directory.join(name), text.as_bytes())?;
     }
 

@@ -83,8 +83,8 @@ pub mod summary;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Errors, Hypotheses, KnownDistance, MeasuredPosition,
-    MirrorImage, MovedPlace, ReceiverDelays, ReceiverEcho, ReceiverError, ReceiverErrorKind, Residual, Residuals,
-    SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate, calibrate_with,
+    MirrorImage, MovedPlace, ReceiverDelays, ReceiverEcho, ReceiverError, ReceiverErrorKind, RecorderClock, Residual,
+    Residuals, SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate, calibrate_with,
 };
 pub use cells::Cells;
 pub use clocks::{Clocks, Emissions, ReceiverClocks};

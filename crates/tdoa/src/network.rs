@@ -39,6 +39,15 @@ impl<const D: usize> Network<D> {
         self.distance(i, j) + self.offsets[j]
     }
 
+    /// What a measurement has beyond distance, offset and clock, metres; `None` where it is missing.
+    pub(crate) fn residual(&self, measured: &Pseudoranges, i: usize, j: usize) -> Option<f64> {
+        let off = measured.get(i, j)? - self.pseudorange(i, j);
+        Some(match (self.clocks.get(i), measured.unknown_clocks()) {
+            (Some(clock), Some(recorders)) => off - recorders.delay(*clock, i, j),
+            _ => off,
+        })
+    }
+
     /// |r_i - s_j| + o_j for all receivers and transmitters in metres, row-major.
     pub fn pseudoranges(&self) -> Vec<f64> {
         let row = |i| (0..self.transmitters.len()).map(move |j| self.pseudorange(i, j));

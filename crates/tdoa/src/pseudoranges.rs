@@ -38,7 +38,7 @@ pub struct Pseudoranges {
     receivers_named: bool,
     /// What is known of the times at which transmitters send.
     emissions: Emissions,
-    /// The recorder of each receiver, by name; each is one by itself where nothing is said.
+    /// The recorder of each receiver, by name; names of receivers tell where nothing is said.
     recorders: Option<Vec<String>>,
     /// What is unknown of the recorders' clocks.
     unknown_clocks: Option<Recorders>,
@@ -264,7 +264,7 @@ impl Pseudoranges {
     }
 
     /// This matrix with the recorder of each receiver, by name: receivers of one recorder share a clock where recorders have
-    /// [clocks of their own](crate::ReceiverClocks). Without, each receiver is a recorder by itself.
+    /// [clocks of their own](crate::ReceiverClocks). Without, [names](Self::recorder_name) tell.
     ///
     /// # Errors
     /// If there are not as many names as receivers.
@@ -273,9 +273,15 @@ impl Pseudoranges {
         Ok(Pseudoranges { recorders: Some(recorders), ..self })
     }
 
-    /// Name of a receiver's recorder: its own where no recorders were given.
+    /// Name of a receiver's recorder. Where no recorders were given, channels of one have its name before a colon and a
+    /// number, such as `rec1:2`, and other receivers are a recorder each, with their own name.
     pub fn recorder_name(&self, receiver: usize) -> &str {
-        &self.recorders.as_ref().unwrap_or(&self.receiver_names)[receiver]
+        if let Some(recorders) = &self.recorders {
+            return &recorders[receiver];
+        }
+        let name = &self.receiver_names[receiver];
+        let is_channel = |text: &str| !text.is_empty() && text.bytes().all(|digit| digit.is_ascii_digit());
+        name.rsplit_once(':').filter(|(_, channel)| is_channel(channel)).map_or(name, |(recorder, _)| recorder)
     }
 
     /// The recorder of each receiver, counted from 0 in the order of the receivers.

@@ -233,8 +233,7 @@ pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulati
     if options.channels > 1 {
         let channel = |i: usize| (i / options.channels + 1, i % options.channels + 1);
         let names = (0..m).map(channel).map(|(recorder, channel)| format!("rec{recorder}:{channel}")).collect();
-        let recorders = (0..m).map(channel).map(|(recorder, _)| format!("rec{recorder}")).collect();
-        pseudoranges = pseudoranges.with_receiver_names(names)?.with_recorders(recorders)?;
+        pseudoranges = pseudoranges.with_receiver_names(names)?;
     }
     Ok(Simulation { network, pseudoranges, outliers, clocks })
 }

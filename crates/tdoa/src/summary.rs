@@ -3,7 +3,7 @@
 use hc::poly::{counted, one_or};
 use std::time::Duration;
 
-use crate::calibrate::{Calibration, SpeedEstimate};
+use crate::calibrate::{Calibration, RecorderClock, SpeedEstimate};
 use crate::degeneracy::space;
 use crate::minimal::MinimalSolution;
 use crate::quantity::{length, number};
@@ -53,6 +53,7 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
     if let Some(speed) = &calibration.speed {
         text += &format!("{}\n", speed_line(speed));
     }
+    calibration.clocks.iter().skip(1).for_each(|clock| text += &format!("{}\n", clock_line(clock)));
     let anchored = calibration.anchored.iter().filter(|&&held| held).count();
     if anchored > 0 {
         text += &format!("held at known positions: {}\n", counted(anchored, "receiver"));
@@ -70,6 +71,20 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
         }
     }
     text
+}
+
+/// The clock of a recorder.
+fn clock_line(clock: &RecorderClock) -> String {
+    let spread = |deviation: Option<f64>, shown: fn(f64) -> String| deviation.map_or("?".to_string(), shown);
+    let ppm = |rate: f64| format!("{} ppm", number(1e6 * rate, 3));
+    let rate = clock.rate.map(|rate| format!(", rate {} (+- {})", ppm(rate), spread(clock.rate_std, ppm)));
+    format!(
+        "clock of {}: {} (+- {}) ahead{}",
+        clock.recorder,
+        length(clock.offset),
+        spread(clock.offset_std, length),
+        rate.unwrap_or_default()
+    )
 }
 
 /// The [`heading`] and the warnings.

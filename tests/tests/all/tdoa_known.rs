@@ -259,8 +259,57 @@ fn ranges_have_no_offsets() {
     assert!(but_for_one < with_offsets && of("offsets").abs() < 4.0 * of("offset_std"), "{but_for_one} {found}");
 
     let (_, message, status) = calibrate(&[text(&file), "--ranges", "--receiver-delays", "all"]);
-    assert!(status == Some(2) && message.contains("cannot be calibrated yet"), "{message}");
+    assert!(status == Some(2) && message.contains("--receiver-clocks offset"), "{message}");
     let (_directory, file) = simulated("--receivers 6 --transmitters 12 --noise 0.01");
     let (_, message, status) = calibrate(&[text(&file), "--ranges"]);
     assert!(status == Some(2) && message.contains("below zero"), "{message}");
+}
+
+/// Recorders of two channels whose clocks were started apart and drift: their offsets and rates, against those of the first.
+#[test]
+fn recorders_have_clocks_of_their_own() {
+    let clocks = "--channels 2 --delays 300 --rate-sigma 20 --duration 200000";
+    let (directory, file) = simulated(&format!("{clocks} --receivers 10 --transmitters 30 --noise 0.01 --seed 3"));
+    let (file, truth) = (text(&file), directory.path().join("receivers.csv"));
+    let run = |options: &[&str]| calibrate(&[&[file, "--dimensions", "2", "--truth", text(&truth)], options].concat());
+    let (found, message, status) = run(&["--receiver-clocks", "rate"]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    // Receivers are as well determined as by thirty transmitters each, of a noise of a centimetre.
+    assert!(found["truth"]["receiver_rms"].as_f64().expect("number") < 0.03, "{found}");
+    let known = std::fs::read_to_string(directory.path().join("clocks.csv")).expect("clocks");
+    let known: Vec<Vec<f64>> = (known.lines().skip(1))
+        .map(|line| line.split(',').skip(1).map(|number| number.parse().expect("number")).collect())
+        .collect();
+    let clocks = found["clocks"].as_array().expect("list");
+    assert_eq!(clocks.len(), 5);
+    for (k, clock) in clocks.iter().enumerate() {
+        let of = |name: &str| clock[name].as_f64().expect("number");
+        assert_eq!(clock["recorder"], format!("rec{}", k + 1));
+        // Of two readings of one time, each off by its own clock.
+        let time = (of("at") - known[2 * k][0]) / (1.0 + known[2 * k][1]);
+        let first = time * (1.0 + known[0][1]) + known[0][0];
+        let off = of("at") - first - of("offset");
+        assert!(off.abs() <= 4.0 * of("offset_std") + 1e-6 && of("offset_std") < 0.05, "{clock} {off}");
+        let rate = (1.0 + known[2 * k][1]) / (1.0 + known[0][1]) - 1.0;
+        assert!((rate - of("rate")).abs() <= 4.0 * of("rate_std") + 1e-12 && of("rate_std") < 1e-6, "{clock} {rate}");
+    }
+    // One clock is not enough.
+    let (_, _, status) = run(&[]);
+    assert_eq!(status, Some(1));
+    let write = |content: &str| {
+        let path = directory.path().join("recorders.csv");
+        std::fs::write(&path, content).expect("written");
+        path
+    };
+    let (found, message, status) = run(&[
+        "--receiver-clocks",
+        "rate",
+        "--recorders",
+        text(&write("receiver,recorder\nrec1:1,left\nrec1:2,right\n")),
+    ]);
+    assert_eq!(status, Some(0), "{message}");
+    assert_eq!(found.expect("JSON")["clocks"].as_array().expect("list").len(), 6);
+    let (_, message, status) = run(&["--receiver-clocks", "rate", "--recorders", text(&write("rec9,x\nrec8,x\n"))]);
+    assert!(status == Some(2) && message.contains("no receiver is named \"rec8\""), "{message}");
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tdoa::CalibrateOptions;
 
-use crate::clocks::EmissionArguments;
+use crate::clocks::{EmissionArguments, ReceiverClockArguments};
 use crate::provenance::{named, said};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
@@ -52,6 +52,8 @@ pub(crate) struct Arguments {
     pub(super) receiver_delays: Delays,
     #[command(flatten)]
     pub(super) sending: EmissionArguments,
+    #[command(flatten)]
+    pub(super) clocks: ReceiverClockArguments,
     /// How measurements are wrong that are wrong by more than noise: too long or too short alike
     /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided). With auto the
     /// latter is tried where no network fits, and said.
@@ -162,7 +164,7 @@ impl Arguments {
             named("max-starts", Some(self.max_starts)),
             named("agreeing", Some(self.agreeing)),
         ];
-        let own = own.into_iter().chain(self.sending.settings()).flatten();
+        let own = own.into_iter().chain(self.sending.settings()).chain(self.clocks.settings()).flatten();
         self.input.settings().into_iter().chain(own).collect()
     }
 }

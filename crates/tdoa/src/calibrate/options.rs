@@ -1,7 +1,7 @@
 //! Options of a calibration, and how it ends early.
 
 use crate::calibrate::unfinished::Unfinished;
-use crate::clocks::Emissions;
+use crate::clocks::{Clocks, ReceiverClocks};
 use crate::degeneracy::Degeneracy;
 use crate::observations::Node;
 use crate::refine::Cancelled;
@@ -120,8 +120,9 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// How to treat receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.
     pub receiver_delays: ReceiverDelays,
-    /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
-    pub emissions: Emissions,
+    /// What is unknown of the clocks of transmitters and recorders. Default: every transmitter has an offset, and receivers
+    /// share a clock.
+    pub clocks: Clocks,
     /// How measurements are wrong if they are wrong by more than noise. Default
     /// [`Errors::Auto`].
     pub errors: Errors,
@@ -190,7 +191,7 @@ impl<const D: usize> CalibrateOptions<D> {
             anchors: Vec::new(),
             positions: Vec::new(),
             receiver_delays: ReceiverDelays::None,
-            emissions: Emissions::Unknown,
+            clocks: Clocks::default(),
             errors: Errors::Auto,
             distances: Vec::new(),
             estimate_speed: false,
@@ -212,8 +213,11 @@ impl<const D: usize> CalibrateOptions<D> {
         if self.errors == Errors::OneSided && self.receiver_delays != ReceiverDelays::None {
             return Err(CalibrateError::OneSidedDelays);
         }
-        if self.emissions != Emissions::Unknown && self.receiver_delays == ReceiverDelays::All {
+        if self.clocks != Clocks::default() && self.receiver_delays == ReceiverDelays::All {
             return Err(CalibrateError::RangesWithDelays);
+        }
+        if self.clocks.receivers != ReceiverClocks::Common && self.errors == Errors::OneSided {
+            return Err(CalibrateError::OneSidedDelays);
         }
         if let Some(sigma) = self.sigma {
             positive("sigma", sigma)?;
@@ -286,16 +290,32 @@ pub enum CalibrateError<const D: usize = 2> {
         /// Number of receivers.
         receivers: usize,
     },
+    /// There are fewer measurements than unknowns, those of clocks among them.
+    #[error(
+        "{} cannot determine {}, {} of clocks among them; measure more transmitters, put more receivers on one recorder, or leave unknowns of \
+         clocks out",
+        counted(*.measurements, "measurement"),
+        counted(*.unknowns, "unknown"),
+        .of_clocks
+    )]
+    Clocks {
+        /// Number of usable measurements.
+        measurements: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+        /// Those of clocks.
+        of_clocks: usize,
+    },
     /// One-sided errors together with errors of receivers that are to be estimated.
     #[error(
         "errors to one side and delays of receivers cannot be estimated together: a receiver all of whose measurements are late looks like one \
          with a delay; give --errors one-sided or --receiver-delays, not both"
     )]
     OneSidedDelays,
-    /// Distances, and delays of all receivers.
+    /// Delays of all receivers, with what is known of clocks.
     #[error(
-        "distances with a constant error of every receiver cannot be calibrated yet; leave known emissions out, so that each transmitter has an \
-         offset, or give --receiver-delays auto if only a few receivers have one"
+        "delays of all receivers are unknown offsets of their clocks: beside what is known of emissions or clocks give --receiver-clocks offset \
+         in place of --receiver-delays all, or --receiver-delays auto if only a few receivers have one"
     )]
     RangesWithDelays,
     /// Many distances are below zero.

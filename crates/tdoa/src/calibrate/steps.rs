@@ -3,9 +3,10 @@
 use crate::calibrate::input::anchors;
 use crate::calibrate::input::impossible::without_impossible;
 use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
-use crate::calibrate::input::ranges::sent;
+use crate::calibrate::input::ranges::with_clocks;
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
+use crate::calibrate::receivers::own_clocks::search_with_clocks;
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::candidates::search_candidates;
 use crate::calibrate::search::hypotheses::Hypotheses;
@@ -45,7 +46,7 @@ impl<'a, const D: usize> Draft<'a, D> {
         options.validate()?;
         anchors::validate(measured, options)?;
         let (table, impossible) = without_impossible(measured);
-        let (table, negative) = sent(table, options.emissions)?;
+        let (table, negative) = with_clocks(table, options.clocks)?;
         let left_out = impossible.into_iter().chain(negative);
         check(monitor)?;
         let mut usable = usable::<D>(&table)?;
@@ -54,6 +55,12 @@ impl<'a, const D: usize> Draft<'a, D> {
         let known = options.sigma.or(if table.knows_sigmas() { Some(1.0) } else { None });
         let input = Input::new(table, usable, options.receiver_delays == ReceiverDelays::All);
         let state = State::new(input.centred(), known, options, monitor);
+        let observations = &state.observations;
+        let (measurements, unknowns) = (observations.len(), observations.unknowns());
+        let of_clocks = observations.clocks().count();
+        if of_clocks > 0 && measurements < unknowns {
+            return Err(CalibrateError::Clocks { measurements, unknowns, of_clocks });
+        }
         Draft { state, input }.then(|draft| draft.search(sources))
     }
 
@@ -96,6 +103,8 @@ impl<'a, const D: usize> Draft<'a, D> {
         let Draft { state, input } = self;
         if state.options.receiver_delays == ReceiverDelays::All {
             search_without_delays(state, sources)?;
+        } else if state.measured.unknown_clocks().is_some() {
+            search_with_clocks(state, sources)?;
         } else if let Some((layout, places)) = local_layout(input, state, sources)? {
             layout.refine(state, &places)?;
             state.settle_candidates()?;

@@ -40,6 +40,11 @@ impl Clocks {
             ReceiverClocks::Offset => Some(Recorders::with_offsets(measured.recorders())),
             ReceiverClocks::Rate => Some(Recorders::with_rates(measured.recorders(), measured.cells())),
         };
-        measured.clone().with_emissions(self.emissions).with_unknown_clocks(recorders)
+        let emissions = match (self.emissions, self.receivers) {
+            // The offset of the first recorder is all transmitters' then.
+            (Emissions::Known, ReceiverClocks::Offset | ReceiverClocks::Rate) => Emissions::Constant,
+            (emissions, _) => emissions,
+        };
+        measured.clone().with_emissions(emissions).with_unknown_clocks(recorders)
     }
 }

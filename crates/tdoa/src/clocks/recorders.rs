@@ -11,14 +11,17 @@ const WITHIN: f64 = 0.9;
 pub(crate) struct Recorders {
     /// The recorder of each receiver.
     of_receivers: Vec<usize>,
-    /// Where clocks may drift, times of measurements by them, from about -1 to 1 over the recording.
+    /// Where clocks may drift: of each measurement the time by its clock, from about -1 to 1 over the recording.
     times: Option<Cells<f64>>,
+    /// Per recorder, the middle of its readings, metres; half the recording.
+    middles: Vec<f64>,
+    unit: f64,
 }
 
 impl Recorders {
     /// These recorders of the receivers, each with an unknown offset.
     pub(crate) fn with_offsets(of_receivers: Vec<usize>) -> Recorders {
-        Recorders { of_receivers, times: None }
+        Recorders { of_receivers, times: None, middles: Vec::new(), unit: 0.0 }
     }
 
     /// These recorders of the receivers, each with an unknown offset and an unknown rate, from the readings of their clocks.
@@ -38,7 +41,7 @@ impl Recorders {
         }
         let time = |i: usize, value: f64| if unit > 0.0 { (value - middles[of_receivers[i]]) / unit } else { 0.0 };
         let times = all.map(|i, _, value| time(i, *value));
-        Recorders { of_receivers, times: Some(times) }
+        Recorders { of_receivers, times: Some(times), middles, unit }
     }
 
     /// The recorder of each receiver.
@@ -64,11 +67,28 @@ impl Recorders {
         self.times.as_ref().and_then(|times| times.get(i, j)).copied().unwrap_or(0.0)
     }
 
+    /// The rate of a clock that drifts by this length in half the recording, as a share; 0 where clocks do not drift.
+    pub(crate) fn rate(&self, drift: f64) -> f64 {
+        if self.unit > 0.0 { drift / self.unit } else { 0.0 }
+    }
+
+    /// The middle of a receiver's readings, metres; 0 where clocks do not drift.
+    pub(crate) fn middle(&self, receiver: usize) -> f64 {
+        self.middles.get(self.of_receivers[receiver]).copied().unwrap_or_default()
+    }
+
+    /// What a clock adds to a measurement.
+    pub(crate) fn delay(&self, [offset, drift]: [f64; 2], i: usize, j: usize) -> f64 {
+        offset + drift * self.time(i, j)
+    }
+
     /// Those of these receivers and transmitters, in this order.
     pub(crate) fn select(&self, receivers: &[usize], transmitters: &[usize]) -> Recorders {
         Recorders {
             of_receivers: receivers.iter().map(|&i| self.of_receivers[i]).collect(),
             times: self.times.as_ref().map(|times| times.select(receivers, transmitters)),
+            middles: self.middles.clone(),
+            unit: self.unit,
         }
     }
 }

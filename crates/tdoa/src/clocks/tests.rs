@@ -19,7 +19,9 @@ pub(crate) struct Model {
 /// All models.
 pub(crate) fn models() -> impl Iterator<Item = Model> {
     let all = [Emissions::Unknown, Emissions::Known, Emissions::Constant];
-    all.into_iter().flat_map(|emissions| (0..3).map(move |recorders| Model { emissions, recorders }))
+    let models = all.into_iter().flat_map(|emissions| (0..3).map(move |recorders| Model { emissions, recorders }));
+    // The offset of the first recorder would be a constant.
+    models.filter(|model| model.emissions != Emissions::Known || model.recorders == 0)
 }
 
 impl Model {
@@ -61,15 +63,8 @@ impl Model {
     /// Unknowns of a network of this size: those of nodes, less a rigid motion, and those of clocks.
     fn unknowns<const D: usize>(self, m: usize, n: usize) -> usize {
         let recorders = m.div_ceil(CHANNELS);
-        let of_recorders = match (self.recorders, self.emissions) {
-            (0, _) => 0,
-            // The common offset of all is that of transmitters.
-            (1, Emissions::Unknown | Emissions::Constant) => recorders - 1,
-            (1, _) => recorders,
-            (_, Emissions::Unknown) => 2 * (recorders - 1),
-            (_, Emissions::Constant) => 2 * recorders - 1,
-            _ => 2 * recorders,
-        };
+        // The first is the reference.
+        let of_recorders = self.recorders * (recorders - 1);
         let offsets = match self.emissions {
             Emissions::Unknown => n,
             Emissions::Known => 0,

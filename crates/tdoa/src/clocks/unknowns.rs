@@ -17,8 +17,8 @@ pub(crate) struct ClockUnknowns {
 impl ClockUnknowns {
     /// Those of receivers with these recorders, and of transmitters of which this is known.
     ///
-    /// Where offsets of transmitters are unknown, what all recorders have in common is one of these. The clock of the first
-    /// recorder is the reference then.
+    /// What all recorders have in common is the transmitters' offsets, and the propagation speed: the clock of the first
+    /// recorder is the reference.
     pub(crate) fn new(emissions: Emissions, recorders: Option<&Recorders>) -> ClockUnknowns {
         let mut count = 0;
         let mut next = || {
@@ -29,15 +29,8 @@ impl ClockUnknowns {
         let Some(recorders) = recorders else { return ClockUnknowns { constant, recorders: Vec::new(), count } };
         let all = recorders.present();
         // By recorder, those that are there in ascending order.
-        let offset_of_first = emissions == Emissions::Known;
-        let drift_of_first = emissions != Emissions::Unknown;
-        let unknowns: Vec<[Option<usize>; 2]> = (0..all.len())
-            .map(|k| {
-                let offset = (k > 0 || offset_of_first).then(&mut next);
-                let drift = (recorders.drift() && (k > 0 || drift_of_first)).then(&mut next);
-                [offset, drift]
-            })
-            .collect();
+        let mut of_one = |k: usize| [k > 0, k > 0 && recorders.drift()].map(|unknown| unknown.then(&mut next));
+        let unknowns: Vec<[Option<usize>; 2]> = (0..all.len()).map(&mut of_one).collect();
         let of = |recorder: &usize| all.binary_search(recorder).map_or([None; 2], |k| unknowns[k]);
         let recorders = recorders.of_receivers().iter().map(of).collect();
         ClockUnknowns { constant, recorders, count }
@@ -80,6 +73,11 @@ impl ClockUnknowns {
         let mut recorders = self.recorders.clone();
         recorders.extend(self.recorders.get(receiver).copied());
         ClockUnknowns { recorders, ..*self }
+    }
+
+    /// The offset and the drift of a receiver's recorder among these unknowns, as far as they are unknown.
+    pub(crate) fn of_receiver(&self, receiver: usize) -> [Option<usize>; 2] {
+        self.recorders.get(receiver).copied().unwrap_or([None; 2])
     }
 
     /// The variance of what all transmitters' offsets have in common, if they are one, from those of these unknowns.

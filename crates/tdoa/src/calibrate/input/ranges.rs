@@ -1,7 +1,7 @@
 //! Measurements of transmitters whose send times are known: distances.
 
 use crate::calibrate::options::CalibrateError;
-use crate::clocks::Emissions;
+use crate::clocks::{Clocks, Emissions, ReceiverClocks};
 use crate::degeneracy::list;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::number;
@@ -10,26 +10,29 @@ use std::borrow::Cow;
 /// Negative values, one in so many of all, above which measurements are no distances with gross errors.
 const MANY: usize = 5;
 
-/// Measurements as those of transmitters of whose times of sending this is known. Where all is known they are distances,
-/// and a warning names the negative ones, which are left out.
+/// Measurements with what is unknown of clocks. Where that is nothing they are distances, and a warning names the negative
+/// ones, which are left out.
 ///
 /// # Errors
 /// If many distances are negative.
-pub(crate) fn sent<const D: usize>(
+pub(crate) fn with_clocks<const D: usize>(
     measured: Cow<'_, Pseudoranges>,
-    emissions: Emissions,
+    clocks: Clocks,
 ) -> Result<(Cow<'_, Pseudoranges>, Option<String>), CalibrateError<D>> {
-    match emissions {
-        Emissions::Unknown => Ok((measured, None)),
-        Emissions::Known => as_ranges(&measured).map(|(ranges, warning)| (Cow::Owned(ranges), warning)),
-        Emissions::Constant => Ok((Cow::Owned(measured.into_owned().with_emissions(emissions)), None)),
+    if clocks == Clocks::default() {
+        return Ok((measured, None));
     }
+    let measured = clocks.of(&measured);
+    if clocks.emissions != Emissions::Known || clocks.receivers != ReceiverClocks::Common {
+        return Ok((Cow::Owned(measured), None));
+    }
+    as_ranges(&measured).map(|(ranges, warning)| (Cow::Owned(ranges), warning))
 }
 
 fn as_ranges<const D: usize>(measured: &Pseudoranges) -> Result<(Pseudoranges, Option<String>), CalibrateError<D>> {
     let negative: Vec<_> = measured.cells().iter().filter(|(.., value)| **value < 0.0).collect();
     let Some(&(i, j, &value)) = negative.first() else {
-        return Ok((measured.clone().with_emissions(Emissions::Known), None));
+        return Ok((measured.clone(), None));
     };
     let names = |i: usize, j: usize| (measured.receiver_names()[i].clone(), measured.transmitter_names()[j].clone());
     if MANY * negative.len() > measured.observed() {
@@ -44,7 +47,7 @@ fn as_ranges<const D: usize>(measured: &Pseudoranges) -> Result<(Pseudoranges, O
         "left out, for distances are positive: {}; leave cells empty where nothing was measured",
         list(&negative.iter().map(name).collect::<Vec<_>>())
     );
-    Ok((measured.filter(|_, _, value| value >= 0.0).with_emissions(Emissions::Known), Some(warning)))
+    Ok((measured.filter(|_, _, value| value >= 0.0), Some(warning)))
 }
 
 #[cfg(test)]
@@ -52,7 +55,7 @@ mod tests {
     use crate::accuracy::cramer_rao;
     use crate::align::align;
     use crate::calibrate::{Calibrates, Dimension};
-    use crate::{CalibrateError, CalibrateOptions, Emissions, SimulateOptions, calibrate, simulate};
+    use crate::{CalibrateError, CalibrateOptions, Clocks, Emissions, SimulateOptions, calibrate, simulate};
 
     /// Networks are as near to the truth as distances tell, or distances with a constant, which is nearer than pseudoranges
     /// do.
@@ -67,7 +70,7 @@ mod tests {
             (options.missing, options.outliers, options.emissions) = (0.1, 0.05, emissions);
             let made = simulate(&options).unwrap();
             let mut options = CalibrateOptions::<D>::new();
-            (options.emissions, options.seed) = (emissions, seed);
+            (options.clocks.emissions, options.seed) = (emissions, seed);
             let found = calibrate(&made.pseudoranges, &options).unwrap();
             let truth = &made.network;
             assert!(found.unique, "seed {seed}");
@@ -104,7 +107,10 @@ mod tests {
     #[test]
     fn pseudoranges_are_no_distances() {
         let made = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
-        let options = CalibrateOptions { emissions: Emissions::Known, ..Default::default() };
+        let options = CalibrateOptions {
+            clocks: Clocks { emissions: Emissions::Known, ..Default::default() },
+            ..Default::default()
+        };
         let found = calibrate(&made.pseudoranges, &options);
         assert!(matches!(found, Err(CalibrateError::NegativeRanges { .. })), "{found:?}");
         let late = made.pseudoranges.map(|_, _, value| value + 30.0);

@@ -1,6 +1,7 @@
 //! The part of a table that is calibrated.
 
-use crate::calibrate::input::middle_delays::without_middle_delays;
+use crate::calibrate::input::first_clocks::first_clocks;
+use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
 use crate::calibrate::unfinished::Unfinished;
 use crate::clocks::Emissions;
 use crate::degeneracy::Usable;
@@ -18,12 +19,17 @@ pub(crate) struct Input<'a> {
     /// What is subtracted from the measurements of each of these transmitters; the offsets take it back at
     /// the end. Large common times cost digits. Nothing is subtracted from distances, the same where all offsets are one.
     pub(crate) shifts: Vec<f64>,
+    /// First guesses of the clocks of these receivers, which are subtracted too: offset and drift over half the recording.
+    /// Empty where they share a clock.
+    pub(crate) clocks: Vec<[f64; 2]>,
 }
 
 impl<'a> Input<'a> {
     /// The nodes that take part in a calibration, in which all receivers may be `delayed`.
     pub(crate) fn new(table: Cow<'a, Pseudoranges>, usable: Usable, delayed: bool) -> Input<'a> {
         let selected = table.select(&usable.receivers, &usable.transmitters);
+        let clocks = selected.unknown_clocks().map_or_else(Vec::new, |recorders| first_clocks(&selected, recorders));
+        let selected = synchronised(selected, &clocks);
         // What is subtracted does not depend on the delays.
         let shifts = match (table.emissions(), delayed) {
             (Emissions::Known, _) => vec![0.0; selected.transmitters()],
@@ -34,13 +40,14 @@ impl<'a> Input<'a> {
             (Emissions::Unknown, true) => middles(&without_middle_delays(&selected)),
             (Emissions::Unknown, false) => middles(&selected),
         };
-        Input { table, usable, shifts }
+        Input { table, usable, shifts, clocks }
     }
 
     /// The measurements that take part, less the shifts.
     pub(crate) fn centred(&self) -> Pseudoranges {
         let selected = self.table.select(&self.usable.receivers, &self.usable.transmitters);
-        selected.map(|_, j, value| value - self.shifts[j])
+        let centred = synchronised(selected, &self.clocks).map(|_, j, value| value - self.shifts[j]);
+        if self.clocks.is_empty() { centred } else { on_a_grid(&centred) }
     }
 
     /// A network of the nodes that take part, as one of all nodes, with the offsets of the table.
@@ -48,6 +55,12 @@ impl<'a> Input<'a> {
         let (m, n) = (self.table.receivers(), self.table.transmitters());
         best.shifted(&self.shifts).among(m, &self.usable.receivers, n, &self.usable.transmitters)
     }
+}
+
+/// Measurements less what these clocks of the receivers add.
+pub(crate) fn synchronised(measured: Pseudoranges, clocks: &[[f64; 2]]) -> Pseudoranges {
+    let Some(recorders) = measured.unknown_clocks().filter(|_| !clocks.is_empty()) else { return measured };
+    measured.map(|i, j, value| value - recorders.delay(clocks[i], i, j))
 }
 
 /// The median of each column.

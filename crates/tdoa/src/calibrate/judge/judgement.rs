@@ -321,7 +321,7 @@ impl<const D: usize> State<'_, D> {
         i: usize,
         j: usize,
     ) -> bool {
-        let residual = measured.get(i, j).map(|f| f - network.pseudorange(i, j));
+        let residual = network.residual(measured, i, j);
         let deviation = sigma * self.measured.sigma(i, j).unwrap_or(1.0);
         residual.is_some_and(|e| e.abs() <= self.options.inlier_threshold * deviation)
     }

@@ -52,7 +52,7 @@ pub(super) fn in_plane(options: &CalibrateOptions<3>, receivers: usize) -> Calib
         anchors,
         positions,
         receiver_delays: options.receiver_delays,
-        emissions: options.emissions,
+        clocks: options.clocks,
         errors: options.errors,
         distances: options.distances.clone(),
         estimate_speed: options.estimate_speed,

@@ -26,7 +26,7 @@ impl<const D: usize> State<'_, D> {
         let best = &ranked[0].network;
         let sigma = known.unwrap_or_else(|| noise(observations, best, deviation, options));
         let kept = Observations::new(measured, |i, j| {
-            let residual = measured.get(i, j).map_or(0.0, |f| f - best.pseudorange(i, j));
+            let residual = best.residual(measured, i, j).unwrap_or(0.0);
             residual.abs() <= options.inlier_threshold * sigma * measured.sigma(i, j).unwrap_or(1.0)
         });
         let sure = known.is_some() || kept.len() > kept.unknowns();

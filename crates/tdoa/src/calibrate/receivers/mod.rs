@@ -8,6 +8,7 @@ pub(crate) mod height_modes;
 pub(crate) mod known_positions;
 pub(crate) mod level;
 pub(crate) mod moves;
+pub(crate) mod own_clocks;
 pub(crate) mod refits;
 pub(crate) mod reflections;
 pub(crate) mod score_test;

@@ -11,6 +11,7 @@ use crate::calibrate::options::Errors;
 use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::candidates::ChosenCandidate;
+use crate::calibrate::report::clocks::RecorderClock;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;
@@ -150,6 +151,10 @@ pub struct Calibration<const D: usize = 2> {
     pub systematic: Option<SystematicErrors<D>>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
+    /// Clocks of the recorders against the first one, where they have clocks of their own. Offsets of transmitters are by the
+    /// clock of the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<RecorderClock>,
     /// What was known of the times at which transmitters sent. Where they were known, offsets are zero.
     #[serde(default)]
     pub emissions: Emissions,
@@ -326,6 +331,7 @@ impl<const D: usize> Calibration<D> {
         for a in self.alternatives.iter_mut() {
             a.residual *= factor;
         }
+        self.clocks.iter_mut().for_each(|clock| clock.rescale(factor));
         for error in self.receiver_errors.iter_mut() {
             error.size *= factor;
         }

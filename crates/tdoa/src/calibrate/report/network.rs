@@ -33,8 +33,8 @@ impl<const D: usize> State<'_, D> {
         let (held, is_held) = (self.observations.held(), self.is_held());
         let (m, n) = (input.table.receivers(), input.table.transmitters());
         let (rows, columns) = (&input.usable.receivers, &input.usable.transmitters);
-        let residual = |(a, b, f): (usize, usize, &f64)| {
-            let length = f - best.pseudorange(a, b);
+        let residual = |(a, b, _): (usize, usize, &f64)| {
+            let length = best.residual(&self.measured, a, b).unwrap_or_default();
             (rows[a], columns[b], Residual { length, inlier: self.is_inlier(&self.measured, best, *sigma, a, b) })
         };
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
@@ -90,7 +90,8 @@ impl<const D: usize> State<'_, D> {
             with_candidates,
             systematic: None,
             warnings: self.warnings(input, judged),
-            emissions: self.options.emissions,
+            clocks: self.recorder_clocks(input, uncertainty),
+            emissions: self.options.clocks.emissions,
             errors: if judged.one_sided.is_some() { Errors::OneSided } else { Errors::Symmetric },
             seed: self.options.seed,
             starts: self.starts,
@@ -125,7 +126,7 @@ impl<const D: usize> State<'_, D> {
     /// Root mean square of the residuals of a network's inliers.
     fn rms(&self, measured: &Pseudoranges, network: &Network<D>, sigma: f64) -> f64 {
         let cells = measured.cells().iter().filter(|&(a, b, _)| self.is_inlier(measured, network, sigma, a, b));
-        let squares: Vec<f64> = cells.map(|(a, b, f)| (f - network.pseudorange(a, b)).powi(2)).collect();
+        let squares: Vec<f64> = cells.filter_map(|(a, b, _)| Some(network.residual(measured, a, b)?.powi(2))).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     }
 

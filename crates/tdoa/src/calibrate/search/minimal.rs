@@ -295,7 +295,7 @@ mod tests {
             options.emissions = Emissions::Known;
             let simulation = simulate(&options).unwrap();
             let mut options = CalibrateOptions::<D>::new();
-            (options.emissions, options.seed, options.sigma) = (Emissions::Known, seed, Some(1e-6));
+            (options.clocks.emissions, options.seed, options.sigma) = (Emissions::Known, seed, Some(1e-6));
             let found = calibrate(&simulation.pseudoranges, &options).unwrap();
             let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
             let errors = all.filter_map(|receivers| {
