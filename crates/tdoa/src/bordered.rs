@@ -50,6 +50,7 @@ impl<const D: usize> Bordered<D> {
     }
 
     /// The inverse of the Cholesky factor, which is lower triangular too; arguments as there.
+    #[inline(always)]
     pub(crate) fn inverse_cholesky(&self, grow: f64, floor: f64) -> Option<Self> {
         let factor = self.cholesky(grow, floor)?;
         let mut inverse = Self::ZERO;

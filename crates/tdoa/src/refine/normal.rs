@@ -112,7 +112,7 @@ impl<const D: usize> Normal<D> {
         self.receiver_blocks.fill(([[0.0; D]; D], [0.0; D]));
         self.transmitter_blocks.fill((Bordered::ZERO, ([0.0; D], 0.0)));
         self.clocks.clear();
-        let clock_terms = observations.clock_terms();
+        let (clock_terms, has_clocks) = (observations.clock_terms(), !self.clocks.is_empty());
         for (k, ((o, ray), &e)) in observations.all().iter().zip(&mut self.rays).zip(residuals).enumerate() {
             let between = minus(network.transmitters[o.transmitter], network.receivers[o.receiver]);
             let d = dot(between, between).sqrt();
@@ -121,7 +121,9 @@ impl<const D: usize> Normal<D> {
             let we = weight * o.precision;
             let w = we * o.precision;
             *ray = (u, w);
-            self.clocks.add(clock_terms.of(k), D * o.receiver, &u, w, we * e);
+            if has_clocks {
+                self.clocks.add(clock_terms.of(k), D * o.receiver, &u, w, we * e);
+            }
             let (rows, gradient) = &mut self.receiver_blocks[o.receiver];
             let (block, placed) = &mut self.transmitter_blocks[o.transmitter];
             for a in 0..D {
@@ -303,11 +305,11 @@ impl<const D: usize> Normal<D> {
             rows.fill(0.0);
             for ((k, o), ray) in places.zip(column).zip(rays) {
                 let ((y, last), u) = coupled(ray);
-                let at = D * o.receiver;
+                let (at, terms) = (D * o.receiver, terms.of(k));
                 for (row, y) in rows.chunks_exact_mut(size).zip(y.into_iter().chain([last])) {
                     // Candidates of one cell add up.
                     row[at..at + D].iter_mut().zip(u).for_each(|(entry, u)| *entry += y * u);
-                    terms.of(k).iter().for_each(|&(at, x)| row[at] += y * x);
+                    terms.iter().for_each(|&(at, x)| row[at] += y * x);
                 }
             }
             for (row, z) in rows.chunks_exact(size).zip(z.0.into_iter().chain([z.1])) {
