@@ -136,7 +136,7 @@ mod tests {
         Dimension<D>: Calibrates<D>,
     {
         let (mut squares, mut of_bound) = (0.0, 0.0);
-        for seed in 0..4 {
+        for seed in 0..2 {
             let mut made = SimulateOptions::<D>::new();
             (made.receivers, made.transmitters, made.noise, made.seed) = (12, 40, 0.01, seed);
             (made.missing, made.outliers, made.emissions, made.channels) = (0.1, 0.05, emissions, channels);
@@ -158,9 +158,9 @@ mod tests {
             squares += apart * apart;
             of_bound += bound * bound;
         }
-        // A robust estimate of four networks of 21 coordinates or more: 1.6 times the bound's mean square would have a chance
-        // of one in a thousand.
-        assert!(squares < 1.6 * of_bound, "{emissions:?} {receivers:?} {channels}: {squares} {of_bound}");
+        // A robust estimate of two networks of 21 coordinates or more: 1.9 times the bound's mean square would have a chance
+        // of less than one in a thousand, if all coordinates were equally certain.
+        assert!(squares < 1.9 * of_bound, "{emissions:?} {receivers:?} {channels}: {squares} {of_bound}");
     }
 
     #[test]
