@@ -8,6 +8,7 @@ use crate::calibrate::options::CalibrateOptions;
 use crate::calibrate::receivers::echo::Echo;
 use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
 use crate::calibrate::unfinished::Unfinished;
+use crate::clocks::Emissions;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::RefinedNetwork;
@@ -96,6 +97,11 @@ impl<'a, const D: usize> State<'a, D> {
             warnings: Vec::new(),
             so_far: None,
         }
+    }
+
+    /// Whether it is known when transmitters send: they have no offsets.
+    pub(crate) fn sends_at_known_times(&self) -> bool {
+        self.options.clocks.emissions == Emissions::Known
     }
 
     /// The errors taken out whose sizes are unknowns: of delays of all receivers, one follows from the others.

@@ -80,8 +80,8 @@ impl ClockUnknowns {
         self.recorders.get(receiver).copied().unwrap_or([None; 2])
     }
 
-    /// The variance of what all transmitters' offsets have in common, if they are one, from those of these unknowns.
-    pub(crate) fn shared_variance(&self, of: impl Fn(usize) -> f64) -> Option<f64> {
-        self.constant.map(of)
+    /// The one that all transmitters' offsets are, if they are one.
+    pub(crate) fn constant(&self) -> Option<usize> {
+        self.constant
     }
 }

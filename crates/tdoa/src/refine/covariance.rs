@@ -49,6 +49,8 @@ pub(crate) struct Covariance<const D: usize = 2> {
     /// Receivers that could move without a change of the measurements (to first order) beyond a
     /// rigid motion.
     pub(crate) loose: Vec<usize>,
+    /// Place in `joint` of the offset that all transmitters share, if they share one.
+    pub(crate) constant: Option<usize>,
 }
 
 impl<const D: usize> Covariance<D> {
@@ -64,6 +66,7 @@ impl<const D: usize> Covariance<D> {
         for (own, (s, t)) in self.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
             if let Some(own) = own {
                 own.add_product(factor, s, t);
+                own.corner = self.constant.map_or(own.corner, |at| self.joint[at * (size + 1)]);
             }
         }
     }
@@ -208,6 +211,7 @@ pub(crate) fn covariance<const D: usize>(
     let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
     let zero = *zero;
     let receivers = (0..m).map(|i| from_fn(|a| from_fn(|b| inverse[(D * i + a, D * i + b)]))).collect();
+    let constant = observations.clocks().constant().map(|at| D * m + at);
     let mut transmitters = Vec::with_capacity(observations.transmitters);
     for j in 0..observations.transmitters {
         check(monitor)?;
@@ -225,10 +229,7 @@ pub(crate) fn covariance<const D: usize>(
                 }
             }
             sum.add(&own_covariance(factor, sigma));
-            sum.corner = observations
-                .clocks()
-                .shared_variance(|k| inverse[(D * m + k, D * m + k)])
-                .unwrap_or(observations.of_offset(sum.corner));
+            sum.corner = constant.map_or_else(|| observations.of_offset(sum.corner), |at| inverse[(at, at)]);
             sum
         }));
     }
@@ -237,7 +238,7 @@ pub(crate) fn covariance<const D: usize>(
     } else {
         loose_beside_held::<D>(&modes.as_ref(), zero, free)
     };
-    let mut found = Covariance { receivers, joint, transmitters, loose };
+    let mut found = Covariance { receivers, joint, transmitters, loose, constant };
     reduced.add_levels(&mut found, observations, sigma);
     Ok(Some(found))
 }

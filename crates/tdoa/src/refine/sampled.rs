@@ -352,7 +352,7 @@ impl<const D: usize> Moments<D> {
             sum.corner *= share;
             Some(sum)
         });
-        Covariance { receivers, transmitters: transmitters.collect(), joint, loose: Vec::new() }
+        Covariance { receivers, transmitters: transmitters.collect(), joint, loose: Vec::new(), constant: None }
     }
 }
 

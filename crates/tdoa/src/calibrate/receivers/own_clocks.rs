@@ -26,6 +26,7 @@ pub(crate) fn search_with_clocks<const D: usize>(
     let few = SearchOptions { max_starts: state.options.search.min_starts, ..state.options.search };
     let few = CalibrateOptions { search: few, ..state.options.clone() };
     state.search_like(state.measured.clone(), &few, sources)?;
+    state.finish_with_clocks()?;
     // What fits best before the clocks are known says little.
     let all = CalibrateOptions { alternative_margin: 1e9, ..state.options.clone() };
     for _ in 0..ROUNDS {
@@ -46,7 +47,7 @@ pub(crate) fn search_with_clocks<const D: usize>(
 }
 
 impl<const D: usize> State<'_, D> {
-    /// Searches networks for these measurements, which may have clocks that are known, and adjusts clocks to them.
+    /// Searches networks for these measurements, whose clocks may be taken for known.
     fn search_like(
         &mut self,
         measured: Pseudoranges,
@@ -60,8 +61,7 @@ impl<const D: usize> State<'_, D> {
         if self.measured.has_candidates() {
             self.take_choice(self.measured.choosing_as(&found.measured));
         }
-        ended?;
-        self.finish_with_clocks()
+        ended
     }
 
     /// Refines the networks with their clocks, and takes the best one's off the measurements.
@@ -83,7 +83,7 @@ impl<const D: usize> State<'_, D> {
         Ok(())
     }
 
-    /// The clocks of the recorders of a network, in their order; none where receivers share a clock.
+    /// The clocks of the recorders of the best network, in their order; none where receivers share a clock.
     pub(crate) fn recorder_clocks(&self, input: &Input<'_>, uncertainty: &Covariance<D>) -> Vec<RecorderClock> {
         let (Some(recorders), best) = (self.measured.unknown_clocks(), &self.ranked[0].network) else {
             return Vec::new();
@@ -92,23 +92,28 @@ impl<const D: usize> State<'_, D> {
         add(&mut clocks, &self.clocks, 1.0);
         add(&mut clocks, &best.clocks, 1.0);
         let (first, size) = (D * self.observations.receivers, self.observations.reduced());
-        let deviation = |at: Option<usize>| -> Option<f64> {
-            let Some(at) = at else { return Some(0.0) };
-            let variance = uncertainty.joint.get((first + at) * (size + 1))?;
-            (variance.is_finite() && *variance >= 0.0).then(|| variance.sqrt())
+        // The deviation of a sum of unknowns.
+        let deviation = |all: &[Option<usize>]| -> Option<f64> {
+            let places = || all.iter().flatten().map(|at| first + at);
+            let pairs = places().flat_map(|a| places().map(move |b| a * size + b));
+            let variance = pairs.map(|place| uncertainty.joint.get(place)).sum::<Option<f64>>()?;
+            (variance.is_finite() && variance >= 0.0).then(|| variance.sqrt())
         };
+        // Where send times are known, what transmitters seem to have in common is the first recorder's.
+        let of_first = self.observations.clocks().constant().filter(|_| self.sends_at_known_times());
+        let shared = of_first.map_or(0.0, |_| best.offsets[0] + input.shifts[0]);
         let shown = |recorder: usize| {
             let i = recorders.of_receivers().iter().position(|of| *of == recorder)?;
             let [offset, drift] = clocks[i];
-            let [of_offset, of_drift] = self.observations.clocks().of_receiver(i).map(deviation);
+            let [of_offset, of_drift] = self.observations.clocks().of_receiver(i);
             let rates = recorders.drift();
             Some(RecorderClock {
                 recorder: self.measured.recorder_name(i).to_string(),
-                offset,
-                offset_std: of_offset,
+                offset: offset + shared,
+                offset_std: deviation(&[of_offset, of_first]),
                 // Readings run ahead by the drift, times by less.
                 rate: rates.then(|| 1.0 / (1.0 - recorders.rate(drift)) - 1.0),
-                rate_std: of_drift.filter(|_| rates).map(|deviation| recorders.rate(deviation)),
+                rate_std: deviation(&[of_drift]).filter(|_| rates).map(|deviation| recorders.rate(deviation)),
                 at: rates.then(|| recorders.middle(i)),
             })
         };
@@ -151,6 +156,16 @@ mod tests {
             let found = calibrate(&made.pseudoranges, &options).unwrap();
             assert_eq!(found.clocks.len(), 12usize.div_ceil(channels), "seed {seed}");
             let truth = &made.network;
+            for (k, clock) in found.clocks.iter().enumerate().filter(|_| receivers == ReceiverClocks::Offset) {
+                // Against the first recorder's, or against send times where these are known.
+                let reference = if emissions == Emissions::Known { 0.0 } else { made.clocks[0][0] };
+                let off = (clock.offset - (made.clocks[k * channels][0] - reference)).abs();
+                let deviation = clock.offset_std.unwrap();
+                assert!(off <= 5.0 * deviation + 1e-6 && deviation < 0.1, "{emissions:?} {k}: {off} {deviation}");
+            }
+            let of_known = |offset: &Option<f64>| *offset == Some(0.0);
+            let known = found.offsets.iter().chain(&found.offset_std).all(of_known);
+            assert_eq!(known, emissions == Emissions::Known);
             let places: Vec<[f64; D]> = found.receivers.iter().flatten().copied().collect();
             let apart = align(&places, &truth.receivers, false).unwrap().rms;
             let bound = cramer_rao_with_clocks(&made.pseudoranges, &made.outliers, truth, 0.01, &options.clocks);

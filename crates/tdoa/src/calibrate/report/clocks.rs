@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The clock of a recorder, against that of the first one.
+/// The clock of a recorder, against that of the first one; where send times are known, its offset is against these.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RecorderClock {
     /// Name of the recorder: of its receiver where no recorders were given.
     pub recorder: String,
-    /// By how much its readings are larger than those of the first recorder, metres: where clocks run at rates of their own,
+    /// By how much its readings are larger than those of the reference, metres: where clocks run at rates of their own,
     /// at the reading [`at`](Self::at).
     pub offset: f64,
     /// Standard deviation of the offset, metres; `None` where the measurements do not determine it.

@@ -38,7 +38,8 @@ impl<const D: usize> State<'_, D> {
             (rows[a], columns[b], Residual { length, inlier: self.is_inlier(&self.measured, best, *sigma, a, b) })
         };
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
-        let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
+        let of_offset = |corner: f64| if self.sends_at_known_times() { 0.0 } else { corner.max(0.0).sqrt() };
+        let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| of_offset(c.corner))).collect();
         let (chosen, with_candidates) = self.chosen(input);
         let mut calibration = Calibration {
             configuration: input.table.configuration(),
@@ -46,7 +47,7 @@ impl<const D: usize> State<'_, D> {
             transmitter_names: input.table.transmitter_names().to_vec(),
             receivers: scatter(m, rows, &best.receivers),
             transmitters: scatter(n, columns, &best.transmitters),
-            offsets: offsets(input, best),
+            offsets: self.offsets(input, best),
             residuals: Residuals(Cells::new(m, n, self.measured.cells().iter().map(residual))),
             sigma: *sigma,
             sigma_estimated: self.known.is_none(),
@@ -142,11 +143,19 @@ impl<const D: usize> State<'_, D> {
         Alternative {
             receivers: scatter(input.table.receivers(), rows, &network.receivers),
             transmitters: scatter(input.table.transmitters(), columns, &network.transmitters),
-            offsets: offsets(input, network),
+            offsets: self.offsets(input, network),
             residual,
             log_likelihood_loss: other.loss,
             receiver_error: error.map(|error| self.receiver_error(&error, true)),
         }
+    }
+
+    /// The offsets of a network in the clock of the table.
+    fn offsets(&self, input: &Input<'_>, network: &Network<D>) -> Vec<Option<f64>> {
+        let known = self.sends_at_known_times();
+        let offset = |(offset, shift): (&f64, &f64)| if known { 0.0 } else { offset + shift };
+        let moved: Vec<f64> = network.offsets.iter().zip(&input.shifts).map(offset).collect();
+        scatter(input.table.transmitters(), &input.usable.transmitters, &moved)
     }
 
     fn far_transmitter(&self, far: &Far<D>) -> FarTransmitter<D> {
@@ -171,12 +180,6 @@ impl<const D: usize> State<'_, D> {
             log_likelihood_loss: image.loss,
         }
     }
-}
-
-/// The offsets of a network in the clock of the table.
-fn offsets<const D: usize>(input: &Input<'_>, network: &Network<D>) -> Vec<Option<f64>> {
-    let moved: Vec<f64> = network.offsets.iter().zip(&input.shifts).map(|(o, shift)| o + shift).collect();
-    scatter(input.table.transmitters(), &input.usable.transmitters, &moved)
 }
 
 /// Values at these indices of a longer list.
