@@ -170,8 +170,7 @@ impl Task<'_> {
             Delays::Auto => ReceiverDelays::Auto,
             Delays::All => ReceiverDelays::All,
         };
-        options.clocks.emissions = arguments.sending.emissions();
-        options.clocks.receivers = arguments.clocks.receivers();
+        options.clocks = arguments.clocks.clocks(arguments.sending);
         options.errors = match arguments.errors {
             Side::Auto => Errors::Auto,
             Side::Symmetric => Errors::Symmetric,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use tdoa::{Emissions, Pseudoranges, ReceiverClocks};
+use tdoa::{Clocks, Emissions, Pseudoranges, ReceiverClocks};
 
 use crate::provenance::{named, said};
 use crate::{Failure, input};
@@ -55,6 +55,13 @@ pub(crate) struct ReceiverClockArguments {
     /// The recorder of each receiver: a line `receiver,recorder` each.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) recorders: Option<PathBuf>,
+    /// Standard deviation of the recorders' offsets about their mean in metres, where something is known of them.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    clock_sigma: Option<f64>,
+    /// Standard deviation of the recorders' rates about their mean in parts in a million, where something is known of them:
+    /// 20 for common quartz crystals.
+    #[arg(long, value_name = "PPM", allow_negative_numbers = true)]
+    rate_sigma: Option<f64>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -65,12 +72,17 @@ enum Clock {
 }
 
 impl ReceiverClockArguments {
-    pub(crate) fn receivers(&self) -> ReceiverClocks {
-        match self.receiver_clocks {
+    /// What is unknown of clocks.
+    pub(crate) fn clocks(&self, sending: EmissionArguments) -> Clocks {
+        let mut clocks = Clocks::default();
+        clocks.emissions = sending.emissions();
+        clocks.receivers = match self.receiver_clocks {
             Clock::Common => ReceiverClocks::Common,
             Clock::Offset => ReceiverClocks::Offset,
             Clock::Rate => ReceiverClocks::Rate,
-        }
+        };
+        (clocks.offset_sigma, clocks.rate_sigma) = (self.clock_sigma, self.rate_sigma.map(|ppm| 1e-6 * ppm));
+        clocks
     }
 
     /// Measurements with the recorders of the file, if there is one.
@@ -80,8 +92,13 @@ impl ReceiverClockArguments {
     }
 
     /// Names and values of the options.
-    pub(crate) fn settings(&self) -> [Option<(String, String)>; 2] {
+    pub(crate) fn settings(&self) -> [Option<(String, String)>; 4] {
         let path = self.recorders.as_ref().map(|path| path.display().to_string());
-        [named("receiver-clocks", Some(said(self.receiver_clocks))), named("recorders", path)]
+        [
+            named("receiver-clocks", Some(said(self.receiver_clocks))),
+            named("recorders", path),
+            named("clock-sigma", self.clock_sigma),
+            named("rate-sigma", self.rate_sigma),
+        ]
     }
 }

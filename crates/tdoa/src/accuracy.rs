@@ -22,7 +22,7 @@ use hc::Monitor;
 /// # Panics
 /// If the sizes of network, measurements and outliers differ.
 pub fn cramer_rao<const D: usize>(measured: &Pseudoranges, outliers: &[bool], truth: &Network<D>, noise: f64) -> f64 {
-    bound(&without(measured, outliers), truth, noise)
+    bound(&without(measured, outliers).at_deviation(noise), truth, noise)
 }
 
 /// [`cramer_rao`] with what is unknown of the clocks of transmitters and recorders.
@@ -220,6 +220,18 @@ mod tests {
             let bound = |measured: &Pseudoranges| cramer_rao_with_clocks(measured, &outliers, &truth, 0.01, &rates);
             let late = measured.map(|_, j, f| f + 1e4 * (j as f64).sin());
             assert!(bound(&late) > with_clocks && bound(&late).is_finite());
+            // What is expected of clocks leads from one model to the other.
+            let expecting = |offset_sigma: f64, rate_sigma: f64| {
+                let (offset_sigma, rate_sigma) = (Some(offset_sigma), Some(rate_sigma));
+                let clocks = Clocks { offset_sigma, rate_sigma, ..rates };
+                cramer_rao_with_clocks(&late, &outliers, &truth, 0.01, &clocks)
+            };
+            let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
+            let least = cramer_rao(&late, &outliers, &truth, 0.01);
+            assert!(close(expecting(1e4, 1.0), bound(&late)) && close(expecting(1e-6, 1e-12), least));
+            assert!(close(expecting(1e4, 1e-12), with_clocks));
+            let between = expecting(0.01, 1e-6);
+            assert!(between > 1.001 * least && between < 0.999 * bound(&late), "{least} {between} {}", bound(&late));
         }
         agree::<2>(8, 12);
         agree::<3>(11, 16);

@@ -39,6 +39,12 @@ impl Loss {
         0.5 * (self.nu + 1.0) * (sum + product.ln())
     }
 
+    /// Weight, among those of residuals, of the derivatives of a negative log-likelihood. Measurements are normal with the
+    /// deviation that this scale was chosen for, and where degrees of freedom are infinite with this one.
+    pub(crate) fn prior_weight(&self, deviation: f64) -> f64 {
+        if self.nu.is_infinite() { deviation.powi(2) } else { self.weight(0.0) * (self.scale / CAUCHY).powi(2) }
+    }
+
     /// Weight of a residual in iteratively reweighted least squares, without the factor 1/scale^2:
     /// cost'(u)/u.
     pub fn weight(&self, residual: f64) -> f64 {
@@ -46,6 +52,10 @@ impl Loss {
         if self.nu.is_infinite() { 1.0 } else { (self.nu + 1.0) / (self.nu + u2) }
     }
 }
+
+/// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise
+/// (Holland and Welsch 1977).
+pub(crate) const CAUCHY: f64 = 2.385;
 
 /// Factor from the scale that maximises the likelihood to the standard deviation, for residuals
 /// that are really normal: the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for normal z with deviation

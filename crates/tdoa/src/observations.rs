@@ -243,6 +243,12 @@ impl<const D: usize> Observations<D> {
         Observations { emissions, clocks, clock_terms, ..self }
     }
 
+    /// These measurements, whose standard deviation this is, metres, or the factor on their own: what is expected of clocks
+    /// is compared with it.
+    pub(crate) fn at_deviation(self, deviation: f64) -> Self {
+        Observations { clocks: self.clocks.at_deviation(deviation), ..self }
+    }
+
     /// These measurements, each with a share of its information.
     pub(crate) fn trusted(&self, shares: &[f64]) -> Self {
         let mut all = self.clone();

@@ -222,6 +222,18 @@ impl<const D: usize> CalibrateOptions<D> {
         if let Some(sigma) = self.sigma {
             positive("sigma", sigma)?;
         }
+        let Clocks { receivers, offset_sigma, rate_sigma, .. } = self.clocks;
+        let common = receivers == ReceiverClocks::Common;
+        for (name, sigma, useless, range) in [
+            ("clocks.offset_sigma", offset_sigma, common, "left out where receivers share a clock"),
+            ("clocks.rate_sigma", rate_sigma, receivers != ReceiverClocks::Rate, "left out where clocks have no rates"),
+        ] {
+            let Some(value) = sigma else { continue };
+            positive(name, value)?;
+            if useless {
+                return Err(CalibrateError::Option { name, range, value });
+            }
+        }
         positive("inlier_threshold", self.inlier_threshold)?;
         positive("alternative_margin", self.alternative_margin)?;
         positive("planar_limit", self.planar_limit)?;

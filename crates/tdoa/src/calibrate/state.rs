@@ -40,8 +40,6 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) doubts_choice: Option<&'static str>,
     /// Where small networks were laid together, receivers whose place no overlap of them supports.
     pub(crate) weak: Option<Vec<usize>>,
-    /// What has been taken off the measurements for clocks of receivers since the first guesses of these.
-    pub(crate) clocks: Vec<[f64; 2]>,
     /// Errors of receivers that are taken out.
     pub(crate) taken: Vec<Fault<D>>,
     /// Errors of receivers that were found and left in.
@@ -85,7 +83,6 @@ impl<'a, const D: usize> State<'a, D> {
             starts: 0,
             doubts_choice: None,
             weak: None,
-            clocks: Vec::new(),
             taken: Vec::new(),
             left: Vec::new(),
             echoes: Vec::new(),

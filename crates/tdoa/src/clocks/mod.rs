@@ -6,12 +6,14 @@
 
 mod emissions;
 mod options;
+mod prior;
 mod recorders;
 mod terms;
 mod unknowns;
 
 pub use emissions::Emissions;
 pub use options::{Clocks, ReceiverClocks};
+pub(crate) use prior::ClockPrior;
 pub(crate) use recorders::Recorders;
 pub(crate) use terms::ClockTerms;
 pub(crate) use unknowns::ClockUnknowns;

@@ -23,13 +23,19 @@ pub enum ReceiverClocks {
 ///
 /// A measurement is f_ij = |r_i - s_j| + o_j + a_d + b_d t_ij: o_j is the offset of transmitter j, a_d the offset and b_d
 /// the rate of the recorder d of receiver i, and t_ij the time by that recorder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Clocks {
     /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
     pub emissions: Emissions,
     /// What the clocks of receivers do. Default [`ReceiverClocks::Common`].
     pub receivers: ReceiverClocks,
+    /// Standard deviation of the recorders' offsets about their mean, metres, such as of recorders that were set by hand.
+    /// Default `None`: nothing is known of them.
+    pub offset_sigma: Option<f64>,
+    /// Standard deviation of the recorders' rates about their mean, a share: 2e-5 for common quartz crystals. Default
+    /// `None`: nothing is known of them.
+    pub rate_sigma: Option<f64>,
 }
 
 impl Clocks {
@@ -40,6 +46,7 @@ impl Clocks {
             ReceiverClocks::Offset => Some(Recorders::with_offsets(measured.recorders())),
             ReceiverClocks::Rate => Some(Recorders::with_rates(measured.recorders(), measured.cells())),
         };
+        let recorders = recorders.map(|recorders| recorders.expecting(self.offset_sigma, self.rate_sigma));
         let emissions = match (self.emissions, self.receivers) {
             // The offset of the first recorder is all transmitters' then.
             (Emissions::Known, ReceiverClocks::Offset | ReceiverClocks::Rate) => Emissions::Constant,

@@ -16,12 +16,26 @@ pub(crate) struct Recorders {
     /// Per recorder, the middle of its readings, metres; half the recording.
     middles: Vec<f64>,
     unit: f64,
+    /// Per receiver, what has been taken off the measurements for its clock: offset and drift over half the recording.
+    taken: Vec<[f64; 2]>,
+    /// One over the variances of offsets and drifts that are expected, 0 where nothing is.
+    information: [f64; 2],
+    /// Standard deviation of the measurements, metres, or the factor on their own.
+    deviation: f64,
 }
 
 impl Recorders {
     /// These recorders of the receivers, each with an unknown offset.
     pub(crate) fn with_offsets(of_receivers: Vec<usize>) -> Recorders {
-        Recorders { of_receivers, times: None, middles: Vec::new(), unit: 0.0 }
+        Recorders {
+            taken: vec![[0.0; 2]; of_receivers.len()],
+            of_receivers,
+            times: None,
+            middles: Vec::new(),
+            unit: 0.0,
+            information: [0.0; 2],
+            deviation: 1.0,
+        }
     }
 
     /// These recorders of the receivers, each with an unknown offset and an unknown rate, from the readings of their clocks.
@@ -41,7 +55,39 @@ impl Recorders {
         }
         let time = |i: usize, value: f64| if unit > 0.0 { (value - middles[of_receivers[i]]) / unit } else { 0.0 };
         let times = all.map(|i, _, value| time(i, *value));
-        Recorders { of_receivers, times: Some(times), middles, unit }
+        Recorders { times: Some(times), middles, unit, ..Recorders::with_offsets(of_receivers) }
+    }
+
+    /// These recorders, whose offsets and rates are expected to have these standard deviations, metres and a share.
+    pub(crate) fn expecting(self, offset: Option<f64>, rate: Option<f64>) -> Recorders {
+        let drift = rate.map(|rate| rate * self.unit).filter(|drift| *drift > 0.0);
+        Recorders { information: [offset, drift].map(|of| of.map_or(0.0, |deviation| deviation.powi(-2))), ..self }
+    }
+
+    /// One over the variances of offsets and drifts that are expected, 0 where nothing is.
+    pub(crate) fn information(&self) -> [f64; 2] {
+        self.information
+    }
+
+    /// Standard deviation of the measurements, metres, or the factor on their own.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// These recorders, of measurements with this standard deviation, metres, or the factor on their own.
+    pub(crate) fn at_deviation(self, deviation: f64) -> Recorders {
+        Recorders { deviation, ..self }
+    }
+
+    /// Per receiver, what has been taken off the measurements for its clock.
+    pub(crate) fn taken(&self) -> &[[f64; 2]] {
+        &self.taken
+    }
+
+    /// These recorders, once more has been taken off the measurements.
+    pub(crate) fn taking(mut self, more: &[[f64; 2]]) -> Recorders {
+        self.taken.iter_mut().flatten().zip(more.iter().flatten()).for_each(|(sum, more)| *sum += more);
+        self
     }
 
     /// The recorder of each receiver.
@@ -88,7 +134,8 @@ impl Recorders {
             of_receivers: receivers.iter().map(|&i| self.of_receivers[i]).collect(),
             times: self.times.as_ref().map(|times| times.select(receivers, transmitters)),
             middles: self.middles.clone(),
-            unit: self.unit,
+            taken: receivers.iter().map(|&i| self.taken[i]).collect(),
+            ..*self
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The unknowns of clocks.
 
+use crate::clocks::prior::{ClockPrior, ExpectedClock};
 use crate::clocks::{Emissions, Recorders};
 use crate::network::Network;
 
@@ -11,6 +12,8 @@ pub(crate) struct ClockUnknowns {
     /// Per receiver, the offset and the drift of its recorder, as far as they are unknown. Empty where all receivers share
     /// a clock.
     recorders: Vec<[Option<usize>; 2]>,
+    /// What is expected of them, where something is.
+    prior: Option<ClockPrior>,
     count: usize,
 }
 
@@ -26,14 +29,17 @@ impl ClockUnknowns {
             count - 1
         };
         let constant = (emissions == Emissions::Constant).then(&mut next);
-        let Some(recorders) = recorders else { return ClockUnknowns { constant, recorders: Vec::new(), count } };
+        let Some(recorders) = recorders else {
+            return ClockUnknowns { constant, count, ..ClockUnknowns::default() };
+        };
         let all = recorders.present();
         // By recorder, those that are there in ascending order.
         let mut of_one = |k: usize| [k > 0, k > 0 && recorders.drift()].map(|unknown| unknown.then(&mut next));
         let unknowns: Vec<[Option<usize>; 2]> = (0..all.len()).map(&mut of_one).collect();
         let of = |recorder: &usize| all.binary_search(recorder).map_or([None; 2], |k| unknowns[k]);
+        let prior = prior(recorders, &all, &unknowns);
         let recorders = recorders.of_receivers().iter().map(of).collect();
-        ClockUnknowns { constant, recorders, count }
+        ClockUnknowns { constant, recorders, prior, count }
     }
 
     /// How many there are.
@@ -72,7 +78,19 @@ impl ClockUnknowns {
     pub(crate) fn split(&self, receiver: usize) -> ClockUnknowns {
         let mut recorders = self.recorders.clone();
         recorders.extend(self.recorders.get(receiver).copied());
-        ClockUnknowns { recorders, ..*self }
+        ClockUnknowns { recorders, ..self.clone() }
+    }
+
+    /// These unknowns, of measurements with this standard deviation, metres, or the factor on their own.
+    pub(crate) fn at_deviation(mut self, deviation: f64) -> ClockUnknowns {
+        self.prior.iter_mut().for_each(|prior| prior.deviation = deviation);
+        self
+    }
+
+    /// What is expected of them, where something is.
+    #[inline]
+    pub(crate) fn prior(&self) -> Option<&ClockPrior> {
+        self.prior.as_ref()
     }
 
     /// The offset and the drift of a receiver's recorder among these unknowns, as far as they are unknown.
@@ -84,4 +102,18 @@ impl ClockUnknowns {
     pub(crate) fn constant(&self) -> Option<usize> {
         self.constant
     }
+}
+
+/// What is expected of the clocks of the recorders that are `present`, which have these unknowns.
+fn prior(recorders: &Recorders, present: &[usize], unknowns: &[[Option<usize>; 2]]) -> Option<ClockPrior> {
+    let information = recorders.information();
+    let expected = |(recorder, unknowns): (&usize, &[Option<usize>; 2])| {
+        let receiver = recorders.of_receivers().iter().position(|of| of == recorder)?;
+        Some(ExpectedClock { receiver, unknowns: *unknowns, taken: recorders.taken()[receiver] })
+    };
+    (information != [0.0; 2]).then(|| ClockPrior {
+        information,
+        deviation: recorders.deviation(),
+        clocks: present.iter().zip(unknowns).filter_map(expected).collect(),
+    })
 }

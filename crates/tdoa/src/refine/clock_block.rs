@@ -1,5 +1,7 @@
 //! The rows of the normal equations that belong to unknowns of clocks.
 
+use crate::clocks::ClockPrior;
+use crate::network::Network;
 use crate::observations::Observations;
 
 /// Normal equations of the unknowns of clocks among themselves and with receivers.
@@ -39,6 +41,14 @@ impl ClockBlock {
             entries[at..at + D].iter_mut().zip(u).for_each(|(entry, u)| *entry += w * x * u);
             terms.iter().filter(|(column, _)| *column <= row).for_each(|&(column, y)| entries[column] += w * x * y);
             self.gradient[row - self.first] -= pull * x;
+        }
+    }
+
+    /// Adds what is expected of the clocks of a network, with this weight.
+    pub(super) fn expect<const D: usize>(&mut self, prior: &ClockPrior, network: &Network<D>, weight: f64) {
+        prior.gradient(network).for_each(|(at, slope)| self.gradient[at] -= weight * slope);
+        for (row, column, curvature) in prior.curvature().filter(|(row, column, _)| column <= row) {
+            self.rows[row * self.size + self.first + column] += weight * curvature;
         }
     }
 

@@ -52,7 +52,8 @@ impl<'a, const D: usize> Descent<'a, D> {
         residuals(self.observations, network, &mut self.residuals);
     }
 
-    /// A step by the normal equations, more and more damped until the cost is below `cost`; returns what it
+    /// A step by the normal equations, more and more damped until the cost, `total` of residuals and a network, is below
+    /// `cost`; returns what it
     /// is then, `None` where no step lowers it. A cost that is larger by no more than the share `flat` ends the
     /// attempts.
     pub(super) fn step_down(
@@ -60,7 +61,7 @@ impl<'a, const D: usize> Descent<'a, D> {
         network: &mut Network<D>,
         cost: f64,
         flat: f64,
-        total: impl Fn(&[f64]) -> f64,
+        total: impl Fn(&[f64], &Network<D>) -> f64,
         monitor: &Monitor,
     ) -> Result<Option<f64>, Cancelled> {
         let mut lower = None;
@@ -68,7 +69,7 @@ impl<'a, const D: usize> Descent<'a, D> {
             if self.normal.solve(self.observations, self.damping, monitor)? {
                 self.normal.step(self.observations, network, &mut self.trial);
                 residuals(self.observations, &self.trial, &mut self.trial_residuals);
-                let next = total(&self.trial_residuals);
+                let next = total(&self.trial_residuals, &self.trial);
                 if next < cost {
                     self.damping = (self.damping * 0.2).max(LEAST);
                     std::mem::swap(network, &mut self.trial);

@@ -95,9 +95,12 @@ impl<const D: usize> Normal<D> {
         loss: &Loss,
     ) {
         self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
+        if let Some(prior) = observations.clocks().prior() {
+            self.clocks.expect(prior, network, loss.prior_weight(prior.deviation()));
+        }
     }
 
-    /// Linearises under any loss: `terms`, of the place of a measurement and its
+    /// Linearises under any loss, but for what is expected of clocks: `terms`, of the place of a measurement and its
     /// residual, and `pin_terms` give the weight and the residual that has, with that weight, the
     /// derivative of the loss.
     #[inline]

@@ -4,6 +4,7 @@ use super::cancel::Cancelled;
 use super::descent::Descent;
 use super::normal::Normal;
 use super::reseed::reseed;
+use crate::clocks::ClockPrior;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -120,15 +121,18 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 fit_scale(&descent.residuals, &loss, share, 20).max(annealed).max(options.floor)
             }
         };
-        let mut cost = loss.total(descent.residuals.iter().copied());
+        let total = |loss: &Loss, residuals: &[f64], network: &Network<D>| {
+            loss.total(residuals.iter().copied()) + unexpected(observations, network, loss)
+        };
+        let mut cost = total(&loss, &descent.residuals, &network);
         let mut calm = 0;
         for _ in 0..options.steps {
             if monitor.is_cancelled() {
                 break;
             }
             descent.normal.linearise(observations, &network, &descent.residuals, &loss);
-            let total = |residuals: &[f64]| loss.total(residuals.iter().copied());
-            let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, total, monitor) else { break };
+            let by = |residuals: &[f64], network: &Network<D>| total(&loss, residuals, network);
+            let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, by, monitor) else { break };
             let improved = lower.is_some_and(|next| cost - next > options.tolerance * cost.abs());
             annealed *= options.anneal_factor;
             let before = loss.scale;
@@ -136,7 +140,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 Some(scale) => scale.max(annealed),
                 None => fit_scale(&descent.residuals, &loss, share, 2).max(annealed).max(options.floor),
             };
-            cost = loss.total(descent.residuals.iter().copied());
+            cost = total(&loss, &descent.residuals, &network);
             let settled = (loss.scale - before).abs() <= 1e-4 * loss.scale;
             calm = if improved || !settled { 0 } else { calm + 1 };
             if calm == 2 {
@@ -175,6 +179,12 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     pub(crate) fn normal(&self) -> &Normal<D> {
         &self.descent.normal
     }
+}
+
+/// What it costs, by this loss, that clocks are not as expected.
+fn unexpected<const D: usize>(observations: &Observations<D>, network: &Network<D>, loss: &Loss) -> f64 {
+    let of = |prior: &ClockPrior| loss.prior_weight(prior.deviation()) / loss.scale.powi(2) * prior.misfit(network);
+    observations.clocks().prior().map_or(0.0, of)
 }
 
 /// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 /

@@ -43,12 +43,12 @@ impl<'a, const D: usize> Weighing<'a, D> {
         let Weighing { descent, monitor } = self;
         let observations = descent.observations;
         let precision = 1.0 / (cost.deviation() * cost.deviation());
-        let total = |residuals: &[f64]| -> f64 {
+        let total = |residuals: &[f64], _: &Network<D>| -> f64 {
             let (cells, pins) = residuals.split_at(observations.len());
             cells.iter().map(|&e| cost.cost(e)).sum::<f64>() + pins.iter().map(|e| 0.5 * precision * e * e).sum::<f64>()
         };
         descent.begin(&mut network);
-        let mut now = total(&descent.residuals);
+        let mut now = total(&descent.residuals, &network);
         for _ in 0..steps {
             check(monitor)?;
             let terms = |_, e| cost.terms(e);

@@ -38,7 +38,7 @@ pub(crate) fn first_clocks(measured: &Pseudoranges, recorders: &Recorders) -> Ve
             let apart: Vec<(f64, f64)> =
                 common.map(|(p, q)| (0.5 * (p[1] / p[2] + q[1] / q[2]), p[0] / p[2] - q[0] / q[2])).collect();
             if apart.len() >= SHARED {
-                let [offset, drift] = line(&apart, recorders.drift());
+                let [offset, drift] = line(&apart, recorders);
                 between[a * count + b] = Some([offset, drift]);
                 between[b * count + a] = Some([-offset, -drift]);
             }
@@ -63,8 +63,8 @@ pub(crate) fn first_clocks(measured: &Pseudoranges, recorders: &Recorders) -> Ve
 }
 
 /// Offset and drift of differences at these times: the middle, and the slope if there may be one and it is no chance.
-fn line(apart: &[(f64, f64)], may_drift: bool) -> [f64; 2] {
-    let drift = if may_drift { slope(apart) } else { 0.0 };
+fn line(apart: &[(f64, f64)], recorders: &Recorders) -> [f64; 2] {
+    let drift = if recorders.drift() { slope(apart, recorders.information()[1]) } else { 0.0 };
     let mut left: Vec<f64> = apart.iter().map(|(time, apart)| apart - drift * time).collect();
     left.sort_by(f64::total_cmp);
     // Gross errors sit at the ends.
@@ -72,8 +72,9 @@ fn line(apart: &[(f64, f64)], may_drift: bool) -> [f64; 2] {
     [0.5 * (left[tenth] + left[left.len() - 1 - tenth]), drift]
 }
 
-/// The median slope from each difference to the one half of the list later in time, if it is no chance.
-fn slope(apart: &[(f64, f64)]) -> f64 {
+/// The median slope from each difference to the one half of the list later in time, if it is no chance; with what is
+/// expected of drifts, one over their variance, if that is anything.
+fn slope(apart: &[(f64, f64)], information: f64) -> f64 {
     let mut all = apart.to_vec();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = all.len() / 2;
@@ -84,5 +85,9 @@ fn slope(apart: &[(f64, f64)]) -> f64 {
     let Some(spread) = median(slopes.into_iter().map(|slope| (slope - middle).abs()).collect()) else { return 0.0 };
     // The deviation of a median is 1.25 that of a mean, and that of normal numbers 1.48 their median size.
     let deviation = 1.25 * 1.48 * spread / count.sqrt();
+    if information > 0.0 {
+        // Two clocks drift apart by both their drifts.
+        return middle / (1.0 + 0.5 * information * deviation.powi(2));
+    }
     if middle.abs() > SIGNIFICANT * deviation { middle } else { 0.0 }
 }

@@ -60,7 +60,8 @@ impl<'a> Input<'a> {
 /// Measurements less what these clocks of the receivers add.
 pub(crate) fn synchronised(measured: Pseudoranges, clocks: &[[f64; 2]]) -> Pseudoranges {
     let Some(recorders) = measured.unknown_clocks().filter(|_| !clocks.is_empty()) else { return measured };
-    measured.map(|i, j, value| value - recorders.delay(clocks[i], i, j))
+    let rest = measured.map(|i, j, value| value - recorders.delay(clocks[i], i, j));
+    rest.with_unknown_clocks(Some(recorders.clone().taking(clocks)))
 }
 
 /// The median of each column.

@@ -141,7 +141,8 @@ impl<const D: usize> State<'_, D> {
         let kept = Observations::new(measured, |i, j| self.is_inlier(measured, best, sigma, i, j))
             .holding(observations.held())
             .pinned_like(observations)
-            .with_other_unknowns(observations.other_unknowns());
+            .with_other_unknowns(observations.other_unknowns())
+            .at_deviation(sigma);
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95::<D>(redundancy, self.known.is_some());
         let mut uncertainty = match (ellipse_radius, &one_sided) {

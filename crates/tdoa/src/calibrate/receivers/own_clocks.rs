@@ -78,8 +78,6 @@ impl<const D: usize> State<'_, D> {
         self.measured = synchronised(self.measured.clone(), &clocks);
         self.observations = Observations::new(&self.measured, |_, _| true);
         self.ranked.iter_mut().for_each(|refined| add(&mut refined.network.clocks, &clocks, -1.0));
-        self.clocks.resize(clocks.len(), [0.0; 2]);
-        add(&mut self.clocks, &clocks, 1.0);
         Ok(())
     }
 
@@ -88,8 +86,7 @@ impl<const D: usize> State<'_, D> {
         let (Some(recorders), best) = (self.measured.unknown_clocks(), &self.ranked[0].network) else {
             return Vec::new();
         };
-        let mut clocks = input.clocks.clone();
-        add(&mut clocks, &self.clocks, 1.0);
+        let mut clocks = recorders.taken().to_vec();
         add(&mut clocks, &best.clocks, 1.0);
         let (first, size) = (D * self.observations.receivers, self.observations.reduced());
         // The deviation of a sum of unknowns.
@@ -188,6 +185,44 @@ mod tests {
         }
         are_at_the_bound::<2>(Emissions::Constant, ReceiverClocks::Offset, 1);
         are_at_the_bound::<3>(Emissions::Known, ReceiverClocks::Offset, 2);
+    }
+
+    /// Rates of 20 parts in a million of few events. That they are expected so sharpens the network and the rates, and
+    /// what is expected wrongly is said.
+    #[test]
+    fn expected_rates_sharpen_rates() {
+        let mut made = SimulateOptions::<2>::new();
+        (made.receivers, made.transmitters, made.noise, made.seed) = (10, 20, 0.01, 3);
+        (made.missing, made.outliers, made.delays, made.rates, made.duration) = (0.1, 0.05, 1e3, 2e-5, Some(2e5));
+        let made = simulate(&made).unwrap();
+        let mut options = CalibrateOptions::default();
+        options.clocks.receivers = ReceiverClocks::Rate;
+        let bound = |options: &CalibrateOptions| {
+            cramer_rao_with_clocks(&made.pseudoranges, &made.outliers, &made.network, 0.01, &options.clocks)
+        };
+        let free = bound(&options);
+        options.clocks.rate_sigma = Some(2e-5);
+        assert!(bound(&options) < free);
+        let found = calibrate(&made.pseudoranges, &options).unwrap();
+        let places: Vec<[f64; 2]> = found.receivers.iter().flatten().copied().collect();
+        let apart = align(&places, &made.network.receivers, false).unwrap().rms;
+        assert!(apart < 3.0 * bound(&options), "{apart} {}", bound(&options));
+        for (clock, truth) in found.clocks.iter().zip(&made.clocks) {
+            let (off, deviation) = (clock.rate.unwrap() - (truth[1] - made.clocks[0][1]), clock.rate_std.unwrap());
+            assert!(off.abs() <= 5.0 * deviation + 1e-10 && deviation < 1e-6, "{off} {deviation}");
+        }
+        let said = |found: &crate::Calibration| found.warnings.iter().any(|warning| warning.contains("--rate-sigma"));
+        assert!(!said(&found), "{:?}", found.warnings);
+        // Clocks that bend the network, and clocks with which no network fits.
+        (options.search.min_starts, options.search.max_starts) = (48, 48);
+        for rate_sigma in [4e-6, 1e-6] {
+            options.clocks.rate_sigma = Some(rate_sigma);
+            let wrongly = calibrate(&made.pseudoranges, &options).unwrap();
+            assert!(said(&wrongly), "{:?} {:?}", wrongly.warnings, wrongly.clocks);
+        }
+        options.clocks.receivers = ReceiverClocks::Offset;
+        let refused = calibrate(&made.pseudoranges, &options);
+        assert!(matches!(refused, Err(CalibrateError::Option { name: "clocks.rate_sigma", .. })), "{refused:?}");
     }
 
     #[test]

@@ -1,6 +1,11 @@
 //! The clocks of recorders in the result.
 
+use crate::calibrate::state::State;
+use crate::degeneracy::list;
 use serde::{Deserialize, Serialize};
+
+/// Expected deviations of clocks beyond which a clock is no chance.
+const SURPRISING: f64 = 4.0;
 
 /// The clock of a recorder, against that of the first one; where send times are known, its offset is against these.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,5 +35,24 @@ impl RecorderClock {
     pub(crate) fn rescale(&mut self, factor: f64) {
         let lengths = [Some(&mut self.offset), self.offset_std.as_mut(), self.at.as_mut()];
         lengths.into_iter().flatten().for_each(|length| *length *= factor);
+    }
+}
+
+impl<const D: usize> State<'_, D> {
+    /// What is wrong with the clocks that were expected, if anything is, where the network `fits` the measurements or not.
+    pub(super) fn warn_of_clocks(&self, fits: bool) -> Option<String> {
+        let surprises = self.observations.clocks().prior()?.surprises(&self.ranked[0].network, SURPRISING);
+        if surprises.is_empty() && !fits {
+            let remedy = "the standard deviations that were given for clocks may be too small: give larger --clock-sigma and --rate-sigma";
+            return Some(remedy.to_string());
+        }
+        let names: Vec<String> = surprises.iter().map(|&i| self.measured.recorder_name(i).to_string()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "clocks are off by more than four of the standard deviations that were given for offsets and rates: {}; check these \
+                 recorders, and --clock-sigma and --rate-sigma",
+                list(&names)
+            )
+        })
     }
 }

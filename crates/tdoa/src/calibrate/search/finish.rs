@@ -6,18 +6,20 @@ use crate::calibrate::search::one_sided::finish_one_sided;
 use crate::calibrate::search::same_network::distinct;
 use crate::calibrate::search::truncated_cost::rank;
 use crate::calibrate::state::State;
+use crate::loss::CAUCHY;
 use crate::observations::Observations;
 use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
-
-/// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise
-/// (Holland and Welsch 1977).
-pub(crate) const CAUCHY: f64 = 2.385;
 
 impl<const D: usize> State<'_, D> {
     /// Refines and ranks the networks, from a deviation near that of the measurements.
     pub(crate) fn finish(&mut self, first: f64) -> Result<(), CalibrateError<D>> {
         let networks = std::mem::take(&mut self.ranked);
         (self.ranked, self.deviation) = self.finished(&self.observations, networks, first)?;
+        if let Some(recorders) = self.measured.unknown_clocks() {
+            let recorders = recorders.clone().at_deviation(self.deviation);
+            self.measured = self.measured.clone().with_unknown_clocks(Some(recorders));
+            self.observations = self.observations.clone().at_deviation(self.deviation);
+        }
         Ok(())
     }
 

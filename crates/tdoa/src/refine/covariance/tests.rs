@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::clocks::Emissions;
-use crate::clocks::tests::{Model, models};
+use crate::clocks::tests::{EXPECTED, Model, SIGMA, expecting, models};
 use crate::network::tests::random;
 use crate::observations::{Level, Node, Pin};
 use crate::pseudoranges::Pseudoranges;
@@ -169,7 +169,7 @@ fn levels_are_unknowns() {
 fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
     let (network, measured) = model.network::<D>(m, n);
     let observations = Observations::<D>::new(&measured, |_, _| true);
-    let (reduced, sigma, step) = (observations.reduced(), 0.02, 1e-5);
+    let (reduced, sigma, step) = (observations.reduced(), SIGMA, 1e-5);
     let own_offsets = model.emissions == Emissions::Unknown;
     let each = if own_offsets { D + 1 } else { D };
     let size = reduced + each * n;
@@ -188,7 +188,8 @@ fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
         }
         network
     };
-    let mut jacobian = Mat::<f64>::zeros(observations.len() + D * (D + 1) / 2, size);
+    let (first_prior, recorders) = (observations.len() + D * (D + 1) / 2, m.div_ceil(2));
+    let mut jacobian = Mat::<f64>::zeros(first_prior + 2 * recorders, size);
     for at in 0..size {
         let [above, below] = [step, -step].map(|by| moved(at, by));
         for (k, o) in observations.all().iter().enumerate() {
@@ -201,6 +202,18 @@ fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
     for at in 0..D * m {
         for (k, x) in of(at / D, at % D).into_iter().enumerate() {
             jacobian[(observations.len() + k, at)] = 1e3 * x;
+        }
+    }
+    if model.expecting {
+        // Each clock less the mean of all.
+        let off_mean = |network: &Network<D>, recorder: usize, k: usize| -> f64 {
+            let all: Vec<f64> = network.clocks.iter().step_by(2).map(|clock| clock[k]).collect();
+            all[recorder] - all.iter().sum::<f64>() / recorders as f64
+        };
+        for (at, row) in (D * m..reduced).flat_map(|at| (0..2 * recorders).map(move |row| (at, row))) {
+            let (recorder, k) = (row / 2, row % 2);
+            let [above, below] = [step, -step].map(|by| off_mean(&moved(at, by), recorder, k));
+            jacobian[(first_prior + row, at)] = (above - below) / (2.0 * step) * sigma / EXPECTED[k];
         }
     }
     let wanted = (jacobian.transpose() * &jacobian).partial_piv_lu().inverse();
@@ -225,7 +238,7 @@ fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
 
 #[test]
 fn clocks_are_unknowns() {
-    for model in models() {
+    for model in models().chain(expecting()) {
         agrees_with_differences::<2>(8, 10, model);
         agrees_with_differences::<3>(10, 13, model);
     }
