@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use tdoa::Calibration;
 use tdoa::quantity::{coordinate, decimals, length, number};
-use tdoa::summary::heading;
+use tdoa::summary::{CLOCK_HEADINGS, clock_row, heading};
 
 use crate::units::Unit;
 
@@ -50,6 +50,7 @@ pub(crate) fn text<const D: usize>(calibration: &Calibration<D>, context: &Conte
         text += "\n";
     }
     text += &more(calibration.transmitters.len());
+    text += &clocks(calibration, digits);
     let outliers: Vec<String> = outliers(calibration);
     if !outliers.is_empty() {
         text += &format!(
@@ -59,6 +60,24 @@ pub(crate) fn text<const D: usize>(calibration: &Calibration<D>, context: &Conte
         );
     }
     text
+}
+
+/// The table of the recorders' clocks, if they have some of their own.
+fn clocks<const D: usize>(calibration: &Calibration<D>, digits: usize) -> String {
+    let rows = calibration.clocks.iter().map(|clock| (&clock.recorder, clock_row(clock, |x| coordinate(x, digits))));
+    let rows: Vec<_> = rows.take(LISTED).collect();
+    let Some((_, first)) = rows.first() else { return String::new() };
+    let line = |name: &str, cells: &mut dyn Iterator<Item = &str>| {
+        format!(
+            "{name:<12} {}\n",
+            cells.map(|cell| format!("{:>14}", if cell.is_empty() { "-" } else { cell })).collect::<String>()
+        )
+    };
+    let mut text = "\n".to_string() + &line("recorder", &mut CLOCK_HEADINGS.into_iter().take(first.len()));
+    for (name, cells) in &rows {
+        text += &line(name, &mut cells.iter().map(String::as_str));
+    }
+    text + &more(calibration.clocks.len())
 }
 
 fn outliers<const D: usize>(calibration: &Calibration<D>) -> Vec<String> {

@@ -9,11 +9,11 @@ use std::fmt::Write;
 mod provenance;
 mod turn;
 
-use crate::calibrate::Calibration;
+use crate::calibrate::{Calibration, RecorderClock};
 use crate::degeneracy::space;
 use crate::picture::{escape, picture};
 use crate::quantity::{coordinate, decimals, length, number};
-use crate::summary::{agreement, choice, deviation, uniqueness};
+use crate::summary::{CLOCK_HEADINGS, agreement, choice, clock_model, clock_row, deviation, uniqueness};
 pub use provenance::Provenance;
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
@@ -75,6 +75,13 @@ pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Prov
     page += &table("receivers", &columns::<D>("receiver", &[]), receivers(calibration));
     page += "<h2>Transmitters</h2>\n";
     page += &table("transmitters", &columns::<D>("transmitter", &OFFSET), transmitters(calibration));
+    if let Some(first) = calibration.clocks.first() {
+        page += "<h2>Clocks</h2>\n";
+        let numbers = clock_row(first, small).len();
+        let columns = CLOCK_HEADINGS.iter().take(numbers).map(|heading| (*heading, false));
+        page +=
+            &table("clocks", &[("recorder", true)].into_iter().chain(columns).collect::<Vec<_>>(), clocks(calibration));
+    }
     page += "<h2>Measurements</h2>\n";
     let (rows, left_out) = measurements(calibration);
     if left_out > 0 {
@@ -131,6 +138,9 @@ fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) 
             |value| format!("{} m/s", number(value, 6)),
         );
         list.push(("Propagation speed", format!("{value}, estimated from {}", counted(speed.distances, "distance"))));
+    }
+    if let Some(model) = clock_model(calibration) {
+        list.push(("Clocks", model));
     }
     let anchored: Vec<&str> = calibration
         .receiver_names
@@ -215,6 +225,12 @@ fn transmitters<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>
         row
     })
     .collect()
+}
+
+fn clocks<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
+    let position = position(calibration);
+    let row = |clock: &RecorderClock| [vec![clock.recorder.clone()], clock_row(clock, &position)].concat();
+    calibration.clocks.iter().map(row).collect()
 }
 
 /// One row a measurement in the order of the matrix, and how many were left out.

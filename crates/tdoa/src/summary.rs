@@ -1,12 +1,15 @@
 //! Results in words: what the program prints above its tables, and what Python shows.
 
+mod clocks;
+
 use hc::poly::{counted, one_or};
 use std::time::Duration;
 
-use crate::calibrate::{Calibration, RecorderClock, SpeedEstimate};
+use crate::calibrate::{Calibration, SpeedEstimate};
 use crate::degeneracy::space;
 use crate::minimal::MinimalSolution;
 use crate::quantity::{length, number};
+pub use clocks::{CLOCK_HEADINGS, clock_model, clock_row};
 
 /// A smaller network makes one ask whether its measurements are times, metres.
 const SMALL: f64 = 0.2;
@@ -53,7 +56,9 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
     if let Some(speed) = &calibration.speed {
         text += &format!("{}\n", speed_line(speed));
     }
-    calibration.clocks.iter().skip(1).for_each(|clock| text += &format!("{}\n", clock_line(clock)));
+    if let Some(model) = clock_model(calibration) {
+        text += &format!("clocks: {model}\n");
+    }
     let anchored = calibration.anchored.iter().filter(|&&held| held).count();
     if anchored > 0 {
         text += &format!("held at known positions: {}\n", counted(anchored, "receiver"));
@@ -71,20 +76,6 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
         }
     }
     text
-}
-
-/// The clock of a recorder.
-fn clock_line(clock: &RecorderClock) -> String {
-    let spread = |deviation: Option<f64>, shown: fn(f64) -> String| deviation.map_or("?".to_string(), shown);
-    let ppm = |rate: f64| format!("{} ppm", number(1e6 * rate, 3));
-    let rate = clock.rate.map(|rate| format!(", rate {} (+- {})", ppm(rate), spread(clock.rate_std, ppm)));
-    format!(
-        "clock of {}: {} (+- {}) ahead{}",
-        clock.recorder,
-        length(clock.offset),
-        spread(clock.offset_std, length),
-        rate.unwrap_or_default()
-    )
 }
 
 /// The [`heading`] and the warnings.
