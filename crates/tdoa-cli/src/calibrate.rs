@@ -53,12 +53,13 @@ impl<const D: usize> Report<'_, D> {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let files = Files::new().reads(Some(&arguments.file)).reads(arguments.anchors.as_deref());
     let files = files.reads(arguments.distances.as_deref()).reads(arguments.truth.as_deref());
-    let files = files.reads(arguments.clocks.recorders.as_deref());
+    let files = files.reads(arguments.clocks.recorders.as_deref()).reads(arguments.clocks.times.as_deref());
     arguments.outputs().into_iter().fold(files, |files, (option, path)| files.writes(option, path)).check()?;
     let date = arguments.html.as_ref().map(|_| provenance::Date::read()).transpose()?;
     let options = arguments.input.options(arguments.estimate_speed)?;
     let (units, said) = (options.units.unwrap_or_default(), options.units.is_some());
-    let measured = arguments.clocks.recorded(input::measurements(&arguments.file, options)?)?;
+    let measured =
+        arguments.clocks.recorded(input::measurements(&arguments.file, options)?, arguments.sending, units)?;
     let nodes = |path: &Option<PathBuf>| path.as_deref().map(input::nodes).transpose();
     let (anchors, true_nodes) = (nodes(&arguments.anchors)?, nodes(&arguments.truth)?);
     let anchors = arguments.anchors.as_deref().zip(anchors);

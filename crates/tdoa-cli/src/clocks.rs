@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use tdoa::read::Units;
 use tdoa::{Clocks, Emissions, Pseudoranges, ReceiverClocks};
 
 use crate::provenance::{named, said};
@@ -55,6 +56,11 @@ pub(crate) struct ReceiverClockArguments {
     /// The recorder of each receiver: a line `receiver,recorder` each.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) recorders: Option<PathBuf>,
+    /// When each transmitter sends, by a clock that they share: a line `transmitter,time` each, in the unit of the
+    /// measurements. With --emissions known the times are those of the receivers' clock too; with --emissions constant an
+    /// offset and a rate between both clocks are unknown, as of a pinger that runs by its own.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) times: Option<PathBuf>,
     /// Standard deviation of the recorders' offsets about their mean in metres, where something is known of them.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     clock_sigma: Option<f64>,
@@ -85,18 +91,34 @@ impl ReceiverClockArguments {
         clocks
     }
 
-    /// Measurements with the recorders of the file, if there is one.
-    pub(crate) fn recorded(&self, measured: Pseudoranges) -> Result<Pseudoranges, Failure> {
-        let Some(path) = &self.recorders else { return Ok(measured) };
-        measured.clone().with_recorders(input::recorders(path, &measured)?).map_err(Failure::unusable)
+    /// Measurements in these units with the recorders and the send times of the files, if there are any.
+    pub(crate) fn recorded(
+        &self,
+        mut measured: Pseudoranges,
+        sending: EmissionArguments,
+        units: Units,
+    ) -> Result<Pseudoranges, Failure> {
+        if let Some(path) = &self.recorders {
+            let recorders = input::recorders(path, &measured)?;
+            measured = measured.with_recorders(recorders).map_err(Failure::unusable)?;
+        }
+        if let Some(path) = &self.times {
+            if sending.emissions() == Emissions::Unknown {
+                return Err(Failure::unusable("--times needs --emissions known or --emissions constant"));
+            }
+            let times = input::emission_times(path, &measured, units)?;
+            measured = measured.with_emission_times(times).map_err(Failure::unusable)?;
+        }
+        Ok(measured)
     }
 
     /// Names and values of the options.
-    pub(crate) fn settings(&self) -> [Option<(String, String)>; 4] {
-        let path = self.recorders.as_ref().map(|path| path.display().to_string());
+    pub(crate) fn settings(&self) -> [Option<(String, String)>; 5] {
+        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         [
             named("receiver-clocks", Some(said(self.receiver_clocks))),
-            named("recorders", path),
+            named("recorders", path(&self.recorders)),
+            named("times", path(&self.times)),
             named("clock-sigma", self.clock_sigma),
             named("rate-sigma", self.rate_sigma),
         ]

@@ -5,7 +5,7 @@ use std::path::Path;
 use cli::input::{is_standard, name, source};
 use tdoa::Pseudoranges;
 use tdoa::calibrate::KnownDistance;
-use tdoa::read::{self, Nodes, ReadOptions};
+use tdoa::read::{self, Nodes, ReadOptions, Units};
 
 use crate::Failure;
 
@@ -38,6 +38,17 @@ pub(crate) fn distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistan
         read::read_distances_from(source(path)?, &name(path), names)
     } else {
         read::read_distances(path, names)
+    };
+    read.map_err(Failure::unusable)
+}
+
+/// When each transmitter of a table sends, metres.
+pub(crate) fn emission_times(path: &Path, measured: &Pseudoranges, units: Units) -> Result<Vec<f64>, Failure> {
+    let names = measured.transmitter_names();
+    let read = if is_standard(path) {
+        read::read_emission_times_from(source(path)?, &name(path), names, units)
+    } else {
+        read::read_emission_times(path, names, units)
     };
     read.map_err(Failure::unusable)
 }

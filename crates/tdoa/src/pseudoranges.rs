@@ -38,6 +38,8 @@ pub struct Pseudoranges {
     receivers_named: bool,
     /// What is known of the times at which transmitters send.
     emissions: Emissions,
+    /// When each transmitter sends, by a clock of their own, metres.
+    emission_times: Option<Vec<f64>>,
     /// The recorder of each receiver, by name; names of receivers tell where nothing is said.
     recorders: Option<Vec<String>>,
     /// What is unknown of the recorders' clocks.
@@ -98,6 +100,7 @@ impl Pseudoranges {
             transmitter_names: (1..=cells.columns()).map(|j| format!("s{j}")).collect(),
             receivers_named: false,
             emissions: Emissions::Unknown,
+            emission_times: None,
             recorders: None,
             unknown_clocks: None,
             sigmas: None,
@@ -256,6 +259,32 @@ impl Pseudoranges {
     /// What is known of the times at which transmitters send.
     pub(crate) fn emissions(&self) -> Emissions {
         self.emissions
+    }
+
+    /// This matrix with the times at which transmitters send, metres: seconds times the propagation speed, by any clock that
+    /// they share. They count where [emissions](Emissions) are known, or known but for what the clock of the receivers adds:
+    /// a constant, and a rate by which that clock and the transmitters' run apart.
+    ///
+    /// # Errors
+    /// If there are not as many times as transmitters, or one is infinite, NaN or above [`MAX_MAGNITUDE`].
+    pub fn with_emission_times(self, times: Vec<f64>) -> Result<Self, PseudorangeError> {
+        check_count("emission times", "transmitter", self.transmitters(), times.len())?;
+        if let Some((j, value)) = times.iter().enumerate().find(|(_, time)| time.is_nan() || time.abs() > MAX_MAGNITUDE)
+        {
+            let transmitter = self.transmitter_names[j].clone();
+            return Err(PseudorangeError::EmissionTime { transmitter, value: *value });
+        }
+        Ok(Pseudoranges { emission_times: Some(times), ..self })
+    }
+
+    /// When each transmitter sends, metres, if that was given.
+    pub fn emission_times(&self) -> Option<&[f64]> {
+        self.emission_times.as_deref()
+    }
+
+    /// When a transmitter sends, metres; 0 where nothing was given.
+    pub(crate) fn emission_time(&self, transmitter: usize) -> f64 {
+        self.emission_times.as_ref().map_or(0.0, |times| times[transmitter])
     }
 
     /// Whether the values are distances, but for what all share: no transmitter has an offset of its own.
@@ -456,6 +485,7 @@ impl Pseudoranges {
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
             emissions: self.emissions,
+            emission_times: self.emission_times.as_ref().map(|all| transmitters.iter().map(|&j| all[j]).collect()),
             recorders: self.recorders.as_ref().map(|all| receivers.iter().map(|&i| all[i].clone()).collect()),
             unknown_clocks: self.unknown_clocks.as_ref().map(|all| all.select(receivers, transmitters)),
             are_shares: self.are_shares,

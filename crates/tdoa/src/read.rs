@@ -5,6 +5,7 @@ mod candidates;
 mod cells;
 mod columns;
 mod distances;
+mod emission_times;
 mod error;
 mod first_column;
 mod grid;
@@ -31,6 +32,7 @@ use std::path::Path;
 
 pub use columns::heads_list;
 pub use distances::{read_distances, read_distances_from};
+pub use emission_times::{read_emission_times, read_emission_times_from};
 pub use error::{MAX_BYTES, ReadError};
 pub use nodes::{Node, Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
 pub use orientation::orientation;

@@ -96,9 +96,14 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
-    /// Whether it is known when transmitters send: they have no offsets.
+    /// Whether it is known when transmitters send: they have no offsets but the times that were given.
     pub(crate) fn sends_at_known_times(&self) -> bool {
-        self.options.clocks.emissions == Emissions::Known
+        match self.options.clocks.emissions {
+            Emissions::Unknown => false,
+            Emissions::Known => true,
+            // The clock of the receivers has the constant then.
+            Emissions::Constant => self.measured.emission_times().is_some(),
+        }
     }
 
     /// The errors taken out whose sizes are unknowns: of delays of all receivers, one follows from the others.

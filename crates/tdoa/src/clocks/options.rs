@@ -26,7 +26,9 @@ pub enum ReceiverClocks {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Clocks {
-    /// What is known of the times at which transmitters send. Default [`Emissions::Unknown`].
+    /// What is known of the times at which transmitters send. Where times are [given](Pseudoranges::with_emission_times) and
+    /// emissions are constant, the receivers' clock has an unknown offset and an unknown rate against them. Default
+    /// [`Emissions::Unknown`].
     pub emissions: Emissions,
     /// What the clocks of receivers do. Default [`ReceiverClocks::Common`].
     pub receivers: ReceiverClocks,
@@ -41,11 +43,17 @@ pub struct Clocks {
 impl Clocks {
     /// Measurements with these unknowns of clocks.
     pub(crate) fn of(&self, measured: &Pseudoranges) -> Pseudoranges {
+        let scheduled = measured.emission_times().is_some() && self.emissions != Emissions::Unknown;
         let recorders = match self.receivers {
+            // One for all receivers.
+            ReceiverClocks::Common if scheduled && self.emissions == Emissions::Constant => {
+                Some(Recorders::with_rates(vec![0; measured.receivers()], measured.cells()))
+            }
             ReceiverClocks::Common => None,
             ReceiverClocks::Offset => Some(Recorders::with_offsets(measured.recorders())),
             ReceiverClocks::Rate => Some(Recorders::with_rates(measured.recorders(), measured.cells())),
         };
+        let recorders = if scheduled { recorders.map(Recorders::scheduled) } else { recorders };
         let recorders = recorders.map(|recorders| recorders.expecting(self.offset_sigma, self.rate_sigma));
         let emissions = match (self.emissions, self.receivers) {
             // The offset of the first recorder is all transmitters' then.

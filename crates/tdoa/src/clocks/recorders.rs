@@ -22,6 +22,8 @@ pub(crate) struct Recorders {
     information: [f64; 2],
     /// Standard deviation of the measurements, metres, or the factor on their own.
     deviation: f64,
+    /// Whether clocks are told against those that transmitters send by: the rate of the first one is unknown too.
+    is_scheduled: bool,
 }
 
 impl Recorders {
@@ -35,6 +37,7 @@ impl Recorders {
             unit: 0.0,
             information: [0.0; 2],
             deviation: 1.0,
+            is_scheduled: false,
         }
     }
 
@@ -62,6 +65,16 @@ impl Recorders {
     pub(crate) fn expecting(self, offset: Option<f64>, rate: Option<f64>) -> Recorders {
         let drift = rate.map(|rate| rate * self.unit).filter(|drift| *drift > 0.0);
         Recorders { information: [offset, drift].map(|of| of.map_or(0.0, |deviation| deviation.powi(-2))), ..self }
+    }
+
+    /// These recorders, whose clocks are told against those that transmitters send by.
+    pub(crate) fn scheduled(self) -> Recorders {
+        Recorders { is_scheduled: true, ..self }
+    }
+
+    /// Whether clocks are told against those that transmitters send by: the rate of the first one is unknown too.
+    pub(crate) fn is_scheduled(&self) -> bool {
+        self.is_scheduled
     }
 
     /// One over the variances of offsets and drifts that are expected, 0 where nothing is.

@@ -21,7 +21,7 @@ impl ClockUnknowns {
     /// Those of receivers with these recorders, and of transmitters of which this is known.
     ///
     /// What all recorders have in common is the transmitters' offsets, and the propagation speed: the clock of the first
-    /// recorder is the reference.
+    /// recorder is the reference. Where transmitters send by a schedule, its rate is unknown too.
     pub(crate) fn new(emissions: Emissions, recorders: Option<&Recorders>) -> ClockUnknowns {
         let mut count = 0;
         let mut next = || {
@@ -34,7 +34,9 @@ impl ClockUnknowns {
         };
         let all = recorders.present();
         // By recorder, those that are there in ascending order.
-        let mut of_one = |k: usize| [k > 0, k > 0 && recorders.drift()].map(|unknown| unknown.then(&mut next));
+        let mut of_one = |k: usize| {
+            [k > 0, recorders.drift() && (k > 0 || recorders.is_scheduled())].map(|unknown| unknown.then(&mut next))
+        };
         let unknowns: Vec<[Option<usize>; 2]> = (0..all.len()).map(&mut of_one).collect();
         let of = |recorder: &usize| all.binary_search(recorder).map_or([None; 2], |k| unknowns[k]);
         let prior = prior(recorders, &all, &unknowns);

@@ -62,6 +62,16 @@ pub enum PseudorangeError {
         /// The value.
         value: f64,
     },
+    /// A time of sending that is not finite, or above [`MAX_MAGNITUDE`].
+    #[error(
+        "transmitter {transmitter}: {value:e} is not a usable time of sending (metres, magnitude at most {MAX_MAGNITUDE:e})"
+    )]
+    EmissionTime {
+        /// Name of the transmitter.
+        transmitter: String,
+        /// The value.
+        value: f64,
+    },
     /// A standard deviation that is not positive and finite.
     #[error(
         "receiver {receiver}, transmitter {transmitter}: the standard deviation must be positive and finite, not {value}"

@@ -6,7 +6,8 @@
 use faer::linalg::solvers::{DenseSolveCore, Llt, Solve};
 use faer::{Mat, Side};
 
-/// Share of the largest entry that is added to the diagonal, so that clocks of which nothing is known have a large variance.
+/// Share of the entries that is added to the diagonal, so that clocks of which nothing is known have a large variance; of the
+/// largest one the square of it.
 const RIDGE: f64 = 1e-13;
 
 /// The clocks' part, decomposed.
@@ -29,8 +30,10 @@ impl EliminatedClocks {
         entry: impl Fn(usize, usize) -> f64,
     ) -> Option<EliminatedClocks> {
         let largest = (0..count).map(|a| entry(first + a, first + a)).fold(0.0, f64::max);
-        let ridge = |a: usize, b: usize| if a == b { RIDGE * largest } else { 0.0 };
-        let own = Mat::from_fn(count, count, |a, b| entry(first + a, first + b) + ridge(a, b));
+        let own = Mat::from_fn(count, count, |a, b| {
+            let entry = entry(first + a, first + b);
+            if a == b { entry + RIDGE * (entry + RIDGE * largest) } else { entry }
+        });
         let factor = own.llt(Side::Lower).ok()?;
         let mixed = Mat::from_fn(count, free.len(), |a, b| entry(first + a, free[b]));
         let follow = factor.solve(&mixed);

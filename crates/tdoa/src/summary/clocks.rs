@@ -23,6 +23,14 @@ pub fn clock_model<const D: usize>(calibration: &Calibration<D>) -> Option<Strin
         return (emissions != Emissions::Unknown).then(|| of_transmitters.to_string());
     };
     let (drift, name) = (first.rate.is_some(), &first.recorder);
+    // Against send times the first recorder's rate is unknown as well.
+    if drift && first.rate_std != Some(0.0) {
+        let whose = match emissions {
+            Emissions::Constant => "the receivers' clock",
+            _ => "each recorder's clock",
+        };
+        return Some(format!("send times are known, {whose} has an unknown offset and an unknown rate against theirs"));
+    }
     let unknown = if drift { "offset and an unknown rate" } else { "offset" };
     let mut told = match (emissions, drift) {
         (Emissions::Known, false) => "offsets are told against the send times".to_string(),

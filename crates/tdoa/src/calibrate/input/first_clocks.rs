@@ -59,7 +59,18 @@ pub(crate) fn first_clocks(measured: &Pseudoranges, recorders: &Recorders) -> Ve
         let first = clocks[0];
         clocks.iter_mut().for_each(|clock| (0..2).for_each(|k| clock[k] -= first[k]));
     }
+    let first = if recorders.is_scheduled() && recorders.drift() { against_schedule(measured, recorders) } else { 0.0 };
+    clocks.iter_mut().for_each(|[_, drift]| *drift += first);
     (0..measured.receivers()).map(|i| clocks[place(i)]).collect()
+}
+
+/// Drift of the first recorder against the times at which transmitters send.
+fn against_schedule(measured: &Pseudoranges, recorders: &Recorders) -> f64 {
+    let first = recorders.of_receivers().first();
+    let cells = measured.cells().iter().filter(|(i, ..)| recorders.of_receivers().get(*i) == first);
+    let late: Vec<(f64, f64)> =
+        cells.map(|(i, j, value)| (recorders.time(i, j), value - measured.emission_time(j))).collect();
+    line(&late, recorders)[1]
 }
 
 /// Offset and drift of differences at these times: the middle, and the slope if there may be one and it is no chance.

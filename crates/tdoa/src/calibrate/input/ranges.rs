@@ -30,8 +30,10 @@ pub(crate) fn with_clocks<const D: usize>(
 }
 
 fn as_ranges<const D: usize>(measured: &Pseudoranges) -> Result<(Pseudoranges, Option<String>), CalibrateError<D>> {
-    let negative: Vec<_> = measured.cells().iter().filter(|(.., value)| **value < 0.0).collect();
-    let Some(&(i, j, &value)) = negative.first() else {
+    let length = |j: usize, value: f64| value - measured.emission_time(j);
+    let negative = measured.cells().iter().map(|(i, j, value)| (i, j, length(j, *value)));
+    let negative: Vec<_> = negative.filter(|(.., length)| *length < 0.0).collect();
+    let Some(&(i, j, value)) = negative.first() else {
         return Ok((measured.clone(), None));
     };
     let names = |i: usize, j: usize| (measured.receiver_names()[i].clone(), measured.transmitter_names()[j].clone());
@@ -39,15 +41,15 @@ fn as_ranges<const D: usize>(measured: &Pseudoranges) -> Result<(Pseudoranges, O
         let (receiver, transmitter) = names(i, j);
         return Err(CalibrateError::NegativeRanges { count: negative.len(), receiver, transmitter, value });
     }
-    let name = |&(i, j, value): &(usize, usize, &f64)| {
+    let name = |&(i, j, value): &(usize, usize, f64)| {
         let (receiver, transmitter) = names(i, j);
-        format!("{receiver}-{transmitter} ({} m)", number(*value, 12))
+        format!("{receiver}-{transmitter} ({} m)", number(value, 12))
     };
     let warning = format!(
         "left out, for distances are positive: {}; leave cells empty where nothing was measured",
         list(&negative.iter().map(name).collect::<Vec<_>>())
     );
-    Ok((measured.filter(|_, _, value| value >= 0.0), Some(warning)))
+    Ok((measured.filter(|_, j, value| length(j, value) >= 0.0), Some(warning)))
 }
 
 #[cfg(test)]

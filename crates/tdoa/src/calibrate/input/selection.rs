@@ -32,10 +32,11 @@ impl<'a> Input<'a> {
         let selected = synchronised(selected, &clocks);
         // What is subtracted does not depend on the delays.
         let shifts = match (table.emissions(), delayed) {
-            (Emissions::Known, _) => vec![0.0; selected.transmitters()],
+            (Emissions::Known, _) => (0..selected.transmitters()).map(|j| selected.emission_time(j)).collect(),
             (Emissions::Constant, _) => {
-                let middle = median(selected.cells().values().to_vec());
-                vec![middle.unwrap_or_default(); selected.transmitters()]
+                let rest = selected.map(|_, j, value| value - selected.emission_time(j));
+                let middle = median(rest.cells().values().to_vec()).unwrap_or_default();
+                (0..selected.transmitters()).map(|j| middle + selected.emission_time(j)).collect()
             }
             (Emissions::Unknown, true) => middles(&without_middle_delays(&selected)),
             (Emissions::Unknown, false) => middles(&selected),

@@ -153,8 +153,10 @@ impl<const D: usize> State<'_, D> {
     /// The offsets of a network in the clock of the table.
     fn offsets(&self, input: &Input<'_>, network: &Network<D>) -> Vec<Option<f64>> {
         let known = self.sends_at_known_times();
-        let offset = |(offset, shift): (&f64, &f64)| if known { 0.0 } else { offset + shift };
-        let moved: Vec<f64> = network.offsets.iter().zip(&input.shifts).map(offset).collect();
+        let offset = |(j, offset): (usize, &f64)| {
+            if known { self.measured.emission_time(j) } else { offset + input.shifts[j] }
+        };
+        let moved: Vec<f64> = network.offsets.iter().enumerate().map(offset).collect();
         scatter(input.table.transmitters(), &input.usable.transmitters, &moved)
     }
 
