@@ -5,6 +5,7 @@ mod calibrate;
 mod chart;
 mod checks;
 mod clean;
+mod clocks;
 mod common;
 mod conditions;
 mod crew;
@@ -61,13 +62,14 @@ enum Kind {
     Damaged(damaged::Arguments),
     Reduced(reduced::Arguments),
     Dimension(dimension::Arguments),
+    Clocks(clocks::Arguments),
     Kinds(kinds::Arguments),
     Families(families::Arguments),
 }
 
 impl Arguments {
     /// Which experiments several ranks can do.
-    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `families`, \
+    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `clocks`, `conditions`, `coverage`, `damaged`, `dimension`, `families`, \
                               `kinds`, `noise`, `reduced`, `routes` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
@@ -87,6 +89,7 @@ impl Arguments {
             | Kind::Damaged(_)
             | Kind::Reduced(_)
             | Kind::Dimension(_)
+            | Kind::Clocks(_)
             | Kind::Kinds(_)
             | Kind::Families(_) => Some(&self.ranks),
         }
@@ -116,6 +119,7 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Damaged(arguments) => damaged::run(arguments, ranks),
         Kind::Reduced(arguments) => reduced::run(arguments, ranks),
         Kind::Dimension(arguments) => dimension::run(arguments, ranks),
+        Kind::Clocks(arguments) => clocks::run(arguments, ranks),
         Kind::Kinds(arguments) => kinds::run(arguments, ranks),
         Kind::Families(arguments) => families::run(arguments, ranks),
     }

@@ -4,6 +4,7 @@
 pub mod calibration;
 pub mod checks;
 pub mod clean;
+pub mod clocks;
 pub mod families;
 pub mod hard;
 pub mod kinds;

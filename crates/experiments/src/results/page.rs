@@ -1,5 +1,6 @@
 //! docs/results.md from the tables in results/, byte for byte the same from the same tables.
 
+mod clocks;
 mod families;
 mod solvers;
 mod space;
@@ -50,6 +51,7 @@ const SECTIONS: &[Section] = &[
     ("reduced", "In space: recordings reduced to the smallest sizes", space::reduced),
     ("dimension", "Plane or space", space::dimension),
     ("kinds", "Networks as rooms, arrays and equipment have them", space::kinds),
+    ("clocks", "Clocks", clocks::clocks),
     ("families", "Families with known numbers of solutions", families::families),
 ];
 

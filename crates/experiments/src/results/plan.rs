@@ -163,5 +163,6 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("dimension", "dimension", 167, 1),
     plain("low", "dimension --height 0.5,1", 20, 1),
     plain("kinds", "kinds", 100, 1),
+    plain("clocks", "clocks", 200, 1),
     plain("families", "families", 50, 1),
 ];

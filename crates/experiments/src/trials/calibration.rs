@@ -142,7 +142,7 @@ where
     Ok(calibration)
 }
 
-fn distance_from<const D: usize>(receivers: &[Option<[f64; D]>], truth: &Network<D>) -> Option<f64> {
+pub(super) fn distance_from<const D: usize>(receivers: &[Option<[f64; D]>], truth: &Network<D>) -> Option<f64> {
     let known: Vec<Option<[f64; D]>> = truth.receivers.iter().copied().map(Some).collect();
     apart(receivers, &known)
 }

@@ -5,7 +5,7 @@ use anyhow::Result;
 use std::path::Path;
 
 /// The lines of the tables of some experiments, one below the other; in words, which were not run yet.
-fn lines(results: &Path, names: &[&str], cells: impl Fn(&Row<'_>) -> Result<Vec<String>>) -> Result<String> {
+pub(super) fn lines(results: &Path, names: &[&str], cells: impl Fn(&Row<'_>) -> Result<Vec<String>>) -> Result<String> {
     let (mut text, mut missing) = (String::new(), String::new());
     for name in names {
         if !results.join(name).join("summary.csv").exists() {
@@ -20,7 +20,7 @@ fn lines(results: &Path, names: &[&str], cells: impl Fn(&Row<'_>) -> Result<Vec<
 }
 
 /// The cells of some columns as they stand.
-fn cells(row: &Row<'_>, columns: &[&str]) -> Result<Vec<String>> {
+pub(super) fn cells(row: &Row<'_>, columns: &[&str]) -> Result<Vec<String>> {
     columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect()
 }
 
