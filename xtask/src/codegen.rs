@@ -67,6 +67,12 @@ const FAMILIES: &[Known] = &[
         "crates/tdoa/src/generated/five_five_ranges.rs",
     ),
     known(
+        "3r4s_constant",
+        "crates/tdoa/families/3r4s_constant.toml",
+        "crates/tdoa/families/3r4s_constant.start.json",
+        "crates/tdoa/src/generated/three_four_constant.rs",
+    ),
+    known(
         "five_point",
         "examples/families/five_point.toml",
         "examples/families/five_point.start.json",

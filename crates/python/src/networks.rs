@@ -28,7 +28,7 @@ pub(crate) struct Asked {
     first_under: Option<f64>,
     dimensions: usize,
     prove: bool,
-    ranges: bool,
+    emissions: String,
 }
 
 /// All networks that explain a table exactly: a dict of arrays.
@@ -43,7 +43,14 @@ pub(crate) fn solve_network<'py>(
         let mut options = MinimalOptions::default();
         options.tolerance = asked.tolerance.unwrap_or(options.tolerance);
         options.first_under = asked.first_under;
-        options.emissions = Emissions::of_ranges(asked.ranges);
+        options.emissions = match &*asked.emissions {
+            "unknown" => Emissions::Unknown,
+            "constant" => Emissions::Constant,
+            "known" => Emissions::Known,
+            other => {
+                return Err(Failure::Input(format!("emissions must be unknown, constant or known, not {other:?}")));
+            }
+        };
         options.start = match &*asked.start {
             "stored" => MinimalStart::Stored,
             "polyhedral" => MinimalStart::Polyhedral,

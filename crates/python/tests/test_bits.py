@@ -96,6 +96,19 @@ def test_exact_networks(m, n, run_json, tmp_path):
             assert bits(float(found.conditions[k])) == bits(each["condition"])
 
 
+@pytest.mark.parametrize("d, m, n", [(2, 3, 4), (2, 4, 3)])
+def test_exact_networks_of_ranges_with_a_constant(d, m, n, run_json, tmp_path):
+    ranges = tdoa.simulate(m, n, dimensions=d, layout="normal", ranges=True, seed=m + n).pseudoranges + 2.5
+    expected = run_json("tdoa", "solve", written(tmp_path, ranges), "--emissions", "constant", "--dimensions", d)
+    found = tdoa.solve(ranges, dimensions=d, emissions="constant")
+    assert expected["emissions"] == "constant" and found.solver == expected["solver"] == f"{m}r/{n}s"
+    assert found.counts == expected["counts"] and len(found) == len(expected["solutions"]) > 0
+    for k, each in enumerate(expected["solutions"]):
+        for name in ("receivers", "transmitters", "offsets"):
+            assert bits(getattr(found, name)[k].tolist()) == bits(each[name])
+    assert (abs(found.offsets[found.physical] - 2.5).max(axis=1) < 1e-9).any()
+
+
 @pytest.mark.parametrize("d, m, n", [(2, 3, 3), (3, 4, 6), (3, 6, 4), (3, 5, 5)])
 def test_exact_networks_of_ranges(d, m, n, run_json, tmp_path):
     made = tdoa.simulate(m, n, dimensions=d, layout="normal", ranges=True, seed=m + n)

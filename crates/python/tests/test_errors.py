@@ -47,6 +47,12 @@ def test_tables_that_determine_nothing():
         tdoa.solve(TABLE[:3, :3])
     with pytest.raises(hc.UndeterminedError, match="3 receivers with 3 transmitters"):
         tdoa.solve(np.ones((2, 3)), ranges=True)
+    with pytest.raises(hc.UndeterminedError, match="4 receivers with 3 transmitters, and 3 with 4"):
+        tdoa.solve(np.ones((3, 3)), emissions="constant")
+    with pytest.raises(hc.InputError, match="known emissions"):
+        tdoa.solve(TABLE[:3, :4], ranges=True, emissions="constant")
+    with pytest.raises(hc.InputError, match="emissions must be unknown, constant or known"):
+        tdoa.solve(TABLE[:3, :4], emissions="never")
     with pytest.raises(hc.UndeterminedError, match="the range of receiver r2 and transmitter s3 is negative"):
         tdoa.solve([[1.0, 2.0, 2.0], [2.0, 1.0, -3.0], [2.5, 1.5, 1.0]], ranges=True)
     gap = TABLE[:6, :3].copy()

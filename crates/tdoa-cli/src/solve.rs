@@ -13,13 +13,15 @@ use tdoa::quantity::{coordinate, decimals};
 use tdoa::summary::networks;
 use tdoa::{Emissions, MinimalSolution, Monitor, Pseudoranges};
 
+use crate::clocks::EmissionArguments;
 use crate::frame::Frame;
 use crate::units::Unit;
 use crate::{Failure, input, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
 /// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 10r/4s, 7r/5s, 6r/6s and all larger
-/// sizes. Of ranges (--ranges) 3r/3s and all larger sizes, in space 6r/4s, 5r/5s, 4r/6s and all larger sizes.
+/// sizes. Of ranges (--ranges) 3r/3s and all larger sizes, in space 6r/4s, 5r/5s, 4r/6s and all larger sizes; of ranges
+/// with one unknown constant (--emissions constant) 4r/3s, 3r/4s and all larger sizes in the plane.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing. - for standard
@@ -31,10 +33,8 @@ pub(crate) struct Arguments {
     /// tables of measurements in space may fit networks in the plane too.
     #[arg(long, value_name = "2|3", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dimensions: u8,
-    /// Takes the measurements as distances, such as two-way ranges or arrival times less known send times:
-    /// transmitters have no offsets, and fewer nodes are enough. None may be negative.
-    #[arg(long)]
-    ranges: bool,
+    #[command(flatten)]
+    sending: EmissionArguments,
     /// How far below zero a distance may lie for a network to count as physical, and in space how
     /// large residuals may be, as a share of the size of the data; for noisy data the noise.
     #[arg(long, default_value_t = MinimalOptions::default().tolerance)]
@@ -125,7 +125,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Unusable("--first-under must not be negative".to_string()));
     }
     let mut options = MinimalOptions::default();
-    options.emissions = Emissions::of_ranges(arguments.ranges);
+    options.emissions = arguments.sending.emissions();
     options.first_under = arguments.first_under;
     options.tolerance = arguments.tolerance;
     options.start = match arguments.start {

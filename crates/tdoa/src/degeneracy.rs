@@ -7,9 +7,16 @@ use crate::clocks::Emissions;
 use crate::duplicates::{Copied, Copies, constant_difference, counted_once, printed};
 use crate::pseudoranges::Pseudoranges;
 
-/// Unknown numbers of a transmitter: its position, and its offset unless measurements are ranges.
+/// Unknown numbers of a transmitter: its position, and its offset unless measurements are ranges, or all offsets are one.
 pub(crate) fn of_transmitter<const D: usize>(emissions: Emissions) -> usize {
-    if emissions == Emissions::Known { D } else { D + 1 }
+    if emissions == Emissions::Unknown { D + 1 } else { D }
+}
+
+/// Unknown numbers of m receivers and n transmitters up to a rigid motion: dm + (d + 1)n - d(d + 1)/2; of ranges n less,
+/// and one more with a constant.
+pub(crate) fn unknowns<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions) -> usize {
+    let shared = usize::from(emissions == Emissions::Constant);
+    (D * receivers + of_transmitter::<D>(emissions) * transmitters).saturating_sub(D * (D + 1) / 2) + shared
 }
 
 /// A transmitter with an offset needs this many measurements to be kept: as many as its position and offset have
@@ -26,12 +33,18 @@ const fn least_per_receiver<const D: usize>() -> usize {
 /// Receivers at most: the normal equations are dense in their coordinates.
 const MAX_RECEIVERS: usize = 2_000;
 
-/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn -
-/// dm - (d + 1)n + d(d + 1)/2, of which the last are the motions of a network as a whole. Transmitters of ranges have
-/// one unknown less.
+/// What is known of offsets if nothing else is unknown of clocks. A constant beside clocks of recorders counts as
+/// offsets: it is one of about as many unknowns.
+pub(crate) fn emissions_alone(measured: &Pseudoranges) -> Emissions {
+    match measured.emissions() {
+        Emissions::Constant if measured.unknown_clocks().is_some() => Emissions::Unknown,
+        emissions => emissions,
+    }
+}
+
+/// Number of equations minus number of [`unknowns`] of m receivers and n transmitters, all measured.
 pub(crate) fn excess<const D: usize>(receivers: usize, transmitters: usize, emissions: Emissions) -> i64 {
-    let (m, n, d) = (receivers as i64, transmitters as i64, D as i64);
-    m * n - d * m - of_transmitter::<D>(emissions) as i64 * n + d * (d + 1) / 2
+    receivers as i64 * transmitters as i64 - unknowns::<D>(receivers, transmitters, emissions) as i64
 }
 
 /// Whether a complete matrix of this size has finitely many solutions: receivers that determine a
@@ -155,7 +168,7 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
     if m > MAX_RECEIVERS {
         return Err(Degeneracy::TooManyReceivers { receivers: m });
     }
-    let emissions = measured.emissions();
+    let emissions = emissions_alone(measured);
     if !is_solvable::<D>(m, n, emissions) {
         return Err(too_small::<D>(m, n, emissions, String::new()));
     }
@@ -194,7 +207,7 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
         return Err(too_small::<D>(receivers.len(), distinct, emissions, left));
     }
     let measurements = measured.select(&receivers, &transmitters).observed();
-    let unknowns = D * receivers.len() + of_transmitter::<D>(emissions) * transmitters.len() - D * (D + 1) / 2;
+    let unknowns = unknowns::<D>(receivers.len(), transmitters.len(), emissions);
     if measurements < unknowns {
         return Err(Degeneracy::TooFew {
             receivers: receivers.len(),

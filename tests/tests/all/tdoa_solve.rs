@@ -142,12 +142,20 @@ fn every_physical_network_is_written_in_the_frame() {
 
 /// Exact distances of given positions.
 fn ranges<const D: usize>(receivers: &[[f64; D]], transmitters: &[[f64; D]]) -> String {
+    ranges_with(0.0, receivers, transmitters)
+}
+
+/// Exact distances of given positions, and a constant.
+fn ranges_with<const D: usize>(constant: f64, receivers: &[[f64; D]], transmitters: &[[f64; D]]) -> String {
     let distance = |r: &[f64; D], s: &[f64; D]| r.iter().zip(s).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-    let row = |r: &[f64; D]| transmitters.iter().map(|s| format!("{:?}", distance(r, s))).collect::<Vec<_>>().join(",");
+    let row = |r: &[f64; D]| {
+        transmitters.iter().map(|s| format!("{:?}", distance(r, s) + constant)).collect::<Vec<_>>().join(",")
+    };
     receivers.iter().map(|r| row(r) + "\n").collect()
 }
 
-/// Networks of the smallest sizes by their ranges alone: the true one is among those listed, and roots are as many as theory says.
+/// Networks of the smallest sizes by their ranges alone, with one unknown constant or without: the true one is among those
+/// listed, and roots are as many as theory says.
 #[test]
 fn ranges_of_the_smallest_sizes() {
     let places =
@@ -155,17 +163,21 @@ fn ranges_of_the_smallest_sizes() {
     let others =
         [[0.3, 2.1, 1.0], [4.0, 0.7, -0.4], [2.2, -1.9, 2.8], [1.6, 3.9, 0.1], [-1.5, -0.9, 1.7], [3.3, 1.5, 3.1]];
     let flat = |p: &[f64; 3]| [p[0], p[1]];
-    let in_plane = ranges(&places.each_ref().map(flat)[..3], &others.each_ref().map(flat)[..3]);
+    let [plane, other_plane] = [&places, &others].map(|all| all.each_ref().map(flat));
+    let constant = -7.25;
     let cases = [
-        ("2", "3r/3s", 8, in_plane),
-        ("3", "4r/6s", 38, ranges(&places[..4], &others)),
-        ("3", "6r/4s", 38, ranges(&places, &others[..4])),
-        ("3", "5r/5s", 42, ranges(&places[..5], &others[..5])),
+        ("2", "known", "3r/3s", 8, ranges(&plane[..3], &other_plane[..3])),
+        ("3", "known", "4r/6s", 38, ranges(&places[..4], &others)),
+        ("3", "known", "6r/4s", 38, ranges(&places, &others[..4])),
+        ("3", "known", "5r/5s", 42, ranges(&places[..5], &others[..5])),
+        ("2", "constant", "3r/4s", 43, ranges_with(constant, &plane[..3], &other_plane[..4])),
+        ("2", "constant", "4r/3s", 43, ranges_with(constant, &plane[..4], &other_plane[..3])),
     ];
-    for (dimensions, size, roots, table) in cases {
-        let (json, message, status) = solve_with(&table, &["--ranges", "--dimensions", dimensions, "--prove"]);
+    for (dimensions, emissions, size, roots, table) in cases {
+        let (json, message, status) =
+            solve_with(&table, &["--emissions", emissions, "--dimensions", dimensions, "--prove"]);
         assert_eq!(status, Some(0), "{size}: {message}");
-        assert_eq!((&json["solver"], &json["emissions"]), (&Value::from(size), &Value::from("known")));
+        assert_eq!((&json["solver"], &json["emissions"]), (&Value::from(size), &Value::from(emissions)));
         assert_eq!((&json["counts"]["complex"], &json["proofs"]["proved"]), (&roots.into(), &roots.into()), "{size}");
         let number = |value: &Value| value.as_f64().unwrap();
         let apart = |a: &Value, b: &Value| {
@@ -183,7 +195,12 @@ fn ranges_of_the_smallest_sizes() {
             receivers.iter().enumerate().all(|(i, r)| (apart(r, &receivers[0]) - between(i)).abs() < 1e-8)
         };
         let truth = solutions.iter().find(is_true).unwrap_or_else(|| panic!("{size}: {json}"));
-        assert!(number(&truth["residual"]) < 1e-12 && truth["offsets"].as_array().unwrap().iter().all(|o| *o == 0.0));
+        let offset = if emissions == "known" { 0.0 } else { constant };
+        let mut offsets = truth["offsets"].as_array().unwrap().iter();
+        assert!(
+            number(&truth["residual"]) < 1e-12 && offsets.all(|o| (number(o) - offset).abs() < 1e-8),
+            "{size}: {truth}"
+        );
     }
 }
 

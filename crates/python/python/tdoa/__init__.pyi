@@ -208,6 +208,7 @@ def solve(
     first_under: float | None = None,
     prove: bool = False,
     ranges: bool = False,
+    emissions: Literal["unknown", "constant", "known"] = "unknown",
     names: _Names | None = None,
     threads: int | None = None,
     progress: _Progress = True,

@@ -348,13 +348,14 @@ def solve(
     first_under=None,
     prove=False,
     ranges=False,
+    emissions="unknown",
     names=None,
     threads=None,
     progress=True,
 ):
     """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 10r/4s, 7r/5s, 6r/6s and up.
 
-    Of ranges, 3r/3s and up, in space 6r/4s, 5r/5s, 4r/6s and up.
+    Of ranges, 3r/3s and up, in space 6r/4s, 5r/5s, 4r/6s and up. Of ranges with one unknown constant, 4r/3s, 3r/4s and up in the plane.
 
     Parameters
     ----------
@@ -374,6 +375,9 @@ def solve(
     ranges : bool
         Whether the measurements are distances, such as two-way ranges or arrival times less known send times: transmitters have no
         offsets, and fewer nodes are enough. None may be negative.
+    emissions : {"unknown", "constant", "known"}
+        What is known of the times at which transmitters send: nothing, all but one constant that they share, such as the delay of a
+        cable or an antenna, or all, for which `ranges` is short.
 
     Returns
     -------
@@ -397,13 +401,15 @@ def solve(
     """
     d = _plane_or_space(dimensions)
     given, _, _ = table(pseudoranges, names, None, speed)
+    if ranges and emissions not in ("unknown", "known"):
+        raise InputError(f"ranges are measurements with known emissions, not emissions={emissions!r}")
     asked = {
         "tolerance": number("tolerance", tolerance),
         "start": text("start", start),
         "first_under": number("first_under", first_under),
         "dimensions": d,
         "prove": bool(prove),
-        "ranges": bool(ranges),
+        "emissions": "known" if ranges else text("emissions", emissions),
     }
     return call(_native.solve_network, given, asked, threads=threads, progress=progress, wrap=Networks)
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::clocks::{Clocks, ReceiverClocks};
 use crate::simulate::{SimulateOptions, simulate};
 
 fn measured(receivers: usize, transmitters: usize) -> Pseudoranges {
@@ -46,6 +47,21 @@ fn smallest_sizes_of_ranges() {
     }
     let error = usable::<3>(&ranges(5, 4)).unwrap_err().to_string();
     assert!(error.contains("add 1 receiver or 1 transmitter"), "{error}");
+}
+
+#[test]
+fn smallest_sizes_of_ranges_with_a_constant() {
+    // (m - 2)(n - 2) >= 2 in the plane, (m - 3)(n - 3) >= 4 in space.
+    assert_eq!(smallest::<2>(Emissions::Constant), "4 receivers and 3 transmitters, or 3 and 4");
+    assert_eq!(smallest::<3>(Emissions::Constant), "7 receivers and 4 transmitters, 5 and 5, or 4 and 7");
+    let ranges = |m: usize, n: usize| measured(m, n).with_emissions(Emissions::Constant);
+    assert!(usable::<2>(&ranges(3, 4)).is_ok() && usable::<2>(&ranges(4, 3)).is_ok());
+    let error = usable::<2>(&ranges(3, 3)).unwrap_err().to_string();
+    assert!(error.contains("add 1 receiver or 1 transmitter"), "{error}");
+    // Recorders with clocks of their own have more unknowns.
+    let measured = measured(4, 3).with_unknown_clocks(None);
+    let clocks = Clocks { emissions: Emissions::Constant, receivers: ReceiverClocks::Offset, ..Default::default() };
+    assert!(usable::<2>(&clocks.of(&measured)).is_err());
 }
 
 #[test]

@@ -13,4 +13,6 @@ pub(crate) mod four_six_ranges;
 #[rustfmt::skip]
 pub(crate) mod six_three;
 #[rustfmt::skip]
+pub(crate) mod three_four_constant;
+#[rustfmt::skip]
 pub(crate) mod three_three_ranges;

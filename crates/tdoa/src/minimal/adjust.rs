@@ -6,7 +6,6 @@ use super::normalised::Normalised;
 use super::options::MinimalOptions;
 use super::polish::NetworkPolisher;
 use super::solution::Candidate;
-use crate::clocks::Emissions;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -39,8 +38,7 @@ pub fn adjust<const D: usize>(
     start: &Network<D>,
     options: &MinimalOptions,
 ) -> Result<Candidate<D>, MinimalError> {
-    let ranges = (options.emissions == Emissions::Known).then(|| measured.clone().with_emissions(Emissions::Known));
-    let measured = ranges.as_ref().unwrap_or(measured);
+    let measured = &measured.clone().with_emissions(options.emissions);
     check::<D>(measured)?;
     let (m, n) = (measured.receivers(), measured.transmitters());
     let sizes = [start.receivers.len(), start.transmitters.len(), start.offsets.len()];
@@ -53,7 +51,7 @@ pub fn adjust<const D: usize>(
     // In the units of the data rounding does not depend on the offsets.
     let scaled = Pseudoranges::new(m, n, data.matrix.clone())
         .map_err(|_| MinimalError::UnusableStart { configuration: measured.configuration() })?;
-    let scaled = if ranges.is_some() { scaled.with_emissions(Emissions::Known) } else { scaled };
+    let scaled = scaled.with_emissions(options.emissions);
     let observations = Observations::<D>::new(&scaled, |_, _| true);
     let network = NetworkRefiner::new(&observations, f64::INFINITY, &hc::Monitor::default())
         .refine(network, &LEAST_SQUARES)

@@ -2,7 +2,7 @@
 
 use super::error::MinimalError;
 use crate::clocks::Emissions;
-use crate::degeneracy::{is_solvable, of_transmitter};
+use crate::degeneracy::{is_solvable, unknowns};
 use crate::duplicates::{constant_difference, rounding};
 use crate::pseudoranges::Pseudoranges;
 
@@ -16,7 +16,7 @@ pub(super) fn check<const D: usize>(measured: &Pseudoranges) -> Result<(), Minim
     let emissions = measured.emissions();
     let constraints = m * n;
     if !is_solvable::<D>(m, n, emissions) {
-        let unknowns = (D * m + of_transmitter::<D>(emissions) * n).saturating_sub(D * (D + 1) / 2);
+        let unknowns = unknowns::<D>(m, n, emissions);
         let configuration = measured.configuration();
         return Err(MinimalError::Underdetermined { dimensions: D, emissions, configuration, constraints, unknowns });
     }
@@ -43,14 +43,14 @@ pub(super) fn check_nodes(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let f = |i: usize, j: usize| values[i * n + j];
     let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     let tolerance = rounding(largest);
-    let are_ranges = measured.emissions() == Emissions::Known;
-    let negative = |&(_, _, value): &(usize, usize, &f64)| are_ranges && *value < 0.0;
+    let emissions = measured.emissions();
+    let negative = |&(_, _, value): &(usize, usize, &f64)| emissions == Emissions::Known && *value < 0.0;
     if let Some((i, j, &value)) = measured.cells().iter().find(negative) {
         let (receiver, transmitter) = (measured.receiver_names()[i].clone(), measured.transmitter_names()[j].clone());
         return Err(MinimalError::NegativeRange { receiver, transmitter, value });
     }
     // Ranges that differ by a constant are those of nodes apart.
-    let are_same = |constant: f64| !are_ranges || constant.abs() <= tolerance;
+    let are_same = |constant: f64| emissions == Emissions::Unknown || constant.abs() <= tolerance;
     for i in 0..m {
         for k in i + 1..m {
             if constant_difference((0..n).map(|j| (f(k, j), f(i, j))), tolerance).is_some_and(are_same) {

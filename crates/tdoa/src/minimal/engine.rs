@@ -53,10 +53,9 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         let make = if F::MANY { FibreTracker::on_all_threads } else { FibreTracker::new };
         let finder = RootFinder {
             tracker: make(F::system(), Recharted::default(), &stored),
-            nearest: if F::RANGES {
-                Nearest::new(stored, 0, 0)
-            } else {
-                Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS)
+            nearest: match F::EMISSIONS {
+                Emissions::Unknown => Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS),
+                Emissions::Known | Emissions::Constant => Nearest::new(stored, 0, 0),
             },
             start,
             from_scratch: None,
@@ -82,7 +81,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
     ) -> Result<MinimalSolution<D>, MinimalError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
-        assert_eq!(measured.emissions() == Emissions::Known, F::RANGES, "kind of measurements");
+        assert_eq!(measured.emissions(), F::EMISSIONS, "kind of measurements");
         let orders = F::orders(measured).unwrap_or_else(|| self.finder.nearest.orders(measured));
         self.data.take_in_order(measured, &orders);
         self.given.clear();
@@ -110,7 +109,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         let RootNetworks { counts, mut candidates, .. } = found;
         rank(&mut candidates);
         Ok(MinimalSolution {
-            emissions: Emissions::of_ranges(F::RANGES),
+            emissions: F::EMISSIONS,
             configuration: measured.configuration(),
             solver: F::NAME,
             paths,

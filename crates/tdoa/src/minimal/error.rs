@@ -18,15 +18,19 @@ pub enum MinimalError {
         "{configuration} is underdetermined{}: {} for {} (positions up to a rigid motion{}); the smallest solvable networks are \
          {}",
         if *.dimensions == 2 { "" } else { " in space" },
-        counted(*.constraints, if *.emissions == Emissions::Known { "range" } else { "measurement" }),
+        counted(*.constraints, if *.emissions == Emissions::Unknown { "measurement" } else { "range" }),
         counted(*.unknowns, "unknown"),
-        if *.emissions == Emissions::Known { "" } else { ", offsets" },
+        match *.emissions {
+            Emissions::Unknown => ", offsets",
+            Emissions::Known => "",
+            Emissions::Constant => ", a constant",
+        },
         smallest(*.dimensions, *.emissions)
     )]
     Underdetermined {
         /// 2 in the plane, 3 in space.
         dimensions: usize,
-        /// Whether measurements are ranges.
+        /// What is known of offsets.
         emissions: Emissions,
         /// Size, such as `4r/4s`.
         configuration: String,
@@ -69,9 +73,9 @@ pub enum MinimalError {
         /// Name of the transmitter.
         transmitter: String,
     },
-    /// Ranges with a constant that is not known.
+    /// Ranges in space with a constant that is not known.
     #[error(
-        "ranges with one unknown constant are not solved exactly: use `calibrate`, or leave the emissions unknown, so that every \
+        "ranges in space with one unknown constant are not solved exactly: use `calibrate`, or leave the emissions unknown, so that every \
          transmitter has an offset"
     )]
     OneConstant,
@@ -162,10 +166,12 @@ pub enum MinimalError {
 
 /// The smallest solvable sizes, in words.
 fn smallest(dimensions: usize, emissions: Emissions) -> &'static str {
-    match dimensions {
-        2 if emissions == Emissions::Known => "3 receivers with 3 transmitters",
-        3 if emissions == Emissions::Known => "6 receivers with 4 transmitters, 5 with 5, and 4 with 6",
-        2 => "6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
-        _ => "10 receivers with 4 transmitters, 7 with 5, 6 with 6, and 5 with 9",
+    match (dimensions, emissions) {
+        (2, Emissions::Unknown) => "6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
+        (_, Emissions::Unknown) => "10 receivers with 4 transmitters, 7 with 5, 6 with 6, and 5 with 9",
+        (2, Emissions::Known) => "3 receivers with 3 transmitters",
+        (_, Emissions::Known) => "6 receivers with 4 transmitters, 5 with 5, and 4 with 6",
+        (2, Emissions::Constant) => "4 receivers with 3 transmitters, and 3 with 4",
+        (_, Emissions::Constant) => "7 receivers with 4 transmitters, 5 with 5, and 4 with 7",
     }
 }

@@ -3,6 +3,7 @@
 use super::linear::LeastSquares;
 use super::normalised::Normalised;
 use super::orders::Orders;
+use crate::clocks::Emissions;
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 use hc::Fibre;
@@ -16,7 +17,7 @@ pub(crate) type Point = SmallVec<[Complex64; 8]>;
 pub(crate) type Parameters = SmallVec<[Complex64; 24]>;
 
 /// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major,
-/// in any unit of length; of ranges, their squares in any unit of these.
+/// in any unit of length; of ranges, their squares in any unit of these, or if all have one constant in common, the ranges.
 pub(crate) trait Formulation {
     /// The evaluator of the equations.
     type System: Evaluate + 'static;
@@ -32,8 +33,8 @@ pub(crate) trait Formulation {
     const WEIGHTS: &'static [i32];
     /// How many parameters grow with the unit; those that follow are ratios.
     const SCALED: usize = usize::MAX;
-    /// Whether measurements are ranges.
-    const RANGES: bool = false;
+    /// What is known of offsets.
+    const EMISSIONS: Emissions = Emissions::Unknown;
     /// Number of charts: forms of the same problem with the nodes in another order. Chart 0 is that
     /// of the data.
     const CHARTS: usize;
@@ -66,13 +67,13 @@ pub(crate) trait Formulation {
     }
 
     /// What is real of a real network: `p_j = o_j - f_1j` of a solution, one for each transmitter; of ranges,
-    /// squares of distances of receivers.
+    /// squares of distances of receivers, and the constant if there is one.
     fn offsets(f: &[Complex64], x: &[Complex64]) -> Point;
 }
 
 /// A formulation of networks in the plane or, with `D` = 3, in space.
 pub(crate) trait FormulationIn<const D: usize = 2>: Formulation {
-    /// The network of a real solution for the parameters `f`, its first receiver in the origin, its offsets `p_j`, of ranges zero;
-    /// `None` unless the positions are real.
+    /// The network of a real solution for the parameters `f`, its first receiver in the origin, its offsets `p_j`, of ranges zero
+    /// or the constant; `None` unless the positions are real.
     fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network<D>>;
 }

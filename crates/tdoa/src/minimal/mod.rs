@@ -32,6 +32,13 @@
 //! | 4r/6s in space, and more transmitters | Gram matrix of the receivers | 38 |
 //! | 6r/4s in space, and more receivers | the same with roles exchanged | 38 |
 //!
+//! Ranges with one unknown constant:
+//!
+//! | size | method | paths |
+//! |---|---|---|
+//! | 3r/4s in the plane, and more of both | Gram matrix of the receivers, and the constant | 43 |
+//! | 4r/3s in the plane, and more receivers | the same with roles exchanged | 43 |
+//!
 //! A solver in the plane that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
 //! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can

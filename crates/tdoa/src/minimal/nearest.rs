@@ -192,10 +192,11 @@ pub fn parameters_near(fibre: &Fibre, measured: &Pseudoranges) -> Vec<Complex64>
 #[cfg(test)]
 mod tests {
     use super::{Nearest, Normalised, Order, Orders};
+    use crate::clocks::Emissions;
     use crate::minimal::formulation::Formulation;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
-    use crate::minimal::ranges::{FiveFive, FourSix, Gram, ThreeThree};
+    use crate::minimal::ranges::{FiveFive, FourSix, Gram, GramAndConstant, ThreeFour, ThreeThree};
     use crate::pseudoranges::Pseudoranges;
     use hc::Fibre;
     use hc::poly::{Evaluate, Isa};
@@ -210,7 +211,7 @@ mod tests {
     /// Solutions stay solutions.
     fn turned_fibres_are_fibres<F: Formulation>() {
         let stored = F::fibre();
-        let [m, n] = if F::RANGES { [0, 0] } else { [F::RECEIVERS, F::TRANSMITTERS] };
+        let [m, n] = if F::EMISSIONS == Emissions::Unknown { [F::RECEIVERS, F::TRANSMITTERS] } else { [0, 0] };
         let nearest = Nearest::new(stored.clone(), m, n);
         let n = stored.dimension;
         let mut moved = stored.clone();
@@ -243,6 +244,7 @@ mod tests {
         turned_fibres_are_fibres::<Gram<ThreeThree, 2>>();
         turned_fibres_are_fibres::<Gram<FourSix, 3>>();
         turned_fibres_are_fibres::<Gram<FiveFive, 3>>();
+        turned_fibres_are_fibres::<GramAndConstant<ThreeFour, 2>>();
     }
 
     /// Data that are the stored measurements in another order, with other clocks, come back in the stored one.

@@ -14,14 +14,16 @@ use smallvec::SmallVec;
 const SAME: f64 = 1e-6;
 
 /// Measurements with the nodes in some order, relative to the first receiver, in units of their own size; ranges as they
-/// are, in these units.
+/// are, in these units, and those with an unknown constant relative to their mean.
 #[derive(Default)]
 pub(crate) struct Normalised {
     orders: Orders,
-    are_ranges: bool,
-    /// `(f_ij - f_1j) / size`, row-major, zeros in the first row; ranges `f_ij / size`.
+    emissions: Emissions,
+    /// `(f_ij - f_1j) / size`, row-major, zeros in the first row; ranges `f_ij / size`, or with the mean `f` of all subtracted
+    /// `(f_ij - f) / size`.
     pub(crate) matrix: Vec<f64>,
-    first: Vec<f64>,
+    /// What is subtracted, for each transmitter.
+    subtracted: Vec<f64>,
     size: f64,
 }
 
@@ -42,14 +44,21 @@ impl Normalised {
     pub(crate) fn take_in_order(&mut self, measured: &Pseudoranges, orders: &Orders) {
         let (f, n) = (measured.cells().values(), measured.transmitters());
         self.orders.clone_from(orders);
-        self.are_ranges = measured.emissions() == Emissions::Known;
+        self.emissions = measured.emissions();
         let Orders { receivers, transmitters } = orders;
         let cell = |i: usize, j: usize| f[receivers[i] * n + transmitters[j]];
-        self.first.clear();
-        self.first.extend((0..n).map(|j| if self.are_ranges { 0.0 } else { cell(0, j) }));
+        // A constant of an hour would leave few digits otherwise.
+        let mean = f.iter().sum::<f64>() / f.len() as f64;
+        self.subtracted.clear();
+        self.subtracted.extend((0..n).map(|j| match self.emissions {
+            Emissions::Unknown => cell(0, j),
+            Emissions::Known => 0.0,
+            Emissions::Constant => mean,
+        }));
         self.matrix.clear();
-        self.matrix.extend((0..f.len()).map(|k| cell(k / n, k % n) - self.first[k % n]));
-        let count = (f.len() - if self.are_ranges { 0 } else { n }) as f64;
+        self.matrix.extend((0..f.len()).map(|k| cell(k / n, k % n) - self.subtracted[k % n]));
+        let zeros = if self.emissions == Emissions::Unknown { n } else { 0 };
+        let count = (f.len() - zeros) as f64;
         let size = (self.matrix.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
         for d in self.matrix.iter_mut() {
             *d /= size;
@@ -57,19 +66,19 @@ impl Normalised {
         self.size = size;
     }
 
-    /// The unit in metres: the root mean square of `f_ij - f_1j`, or of ranges.
+    /// The unit in metres: the root mean square of `f_ij - f_1j`, of ranges, or of what they differ by from their mean.
     pub(crate) fn size(&self) -> f64 {
         self.size
     }
 
     /// Number of transmitters.
     pub(crate) fn transmitters(&self) -> usize {
-        self.first.len()
+        self.subtracted.len()
     }
 
     /// `(f_ij - f_1j) / size` for `i = 2..m`, row-major: the parameters of the families.
     pub(crate) fn parameters(&self) -> &[f64] {
-        &self.matrix[self.first.len()..]
+        &self.matrix[self.subtracted.len()..]
     }
 
     /// A network in these units, polished over all measurements and judged.
@@ -80,7 +89,7 @@ impl Normalised {
         polisher: &mut NetworkPolisher<D>,
     ) -> Candidate<D> {
         let condition =
-            if options.polish { polisher.polish(&self.matrix, self.are_ranges, &mut network) } else { f64::NAN };
+            if options.polish { polisher.polish(&self.matrix, self.emissions, &mut network) } else { f64::NAN };
         let n = self.transmitters();
         let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);
         let residuals =
@@ -94,8 +103,8 @@ impl Normalised {
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x *= self.size;
         }
-        for (o, first) in network.offsets.iter_mut().zip(&self.first) {
-            *o = *o * self.size + first;
+        for (o, subtracted) in network.offsets.iter_mut().zip(&self.subtracted) {
+            *o = *o * self.size + subtracted;
         }
         let Orders { receivers, transmitters } = &self.orders;
         if receivers.is_sorted() && transmitters.is_sorted() {
@@ -118,8 +127,8 @@ impl Normalised {
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x /= self.size;
         }
-        for (o, first) in network.offsets.iter_mut().zip(&self.first) {
-            *o = (*o - first) / self.size;
+        for (o, subtracted) in network.offsets.iter_mut().zip(&self.subtracted) {
+            *o = (*o - subtracted) / self.size;
         }
     }
 }

@@ -8,7 +8,7 @@ use hc::family::FibreOptions;
 #[non_exhaustive]
 pub struct MinimalOptions {
     /// What is known of the times at which transmitters send. With [`Emissions::Known`] measurements are ranges, and
-    /// offsets are zero. Default [`Emissions::Unknown`].
+    /// offsets are zero; with [`Emissions::Constant`] all are one. Default [`Emissions::Unknown`].
     pub emissions: Emissions,
     /// How far below zero a distance f_ij - o_j may lie if a candidate is to count as physical,
     /// relative to the size of the data (root mean square of f_ij - f_1j). Default 1e-6; for noisy

@@ -1,6 +1,7 @@
 //! Gauss-Newton in the primal coordinates: the last digits of a candidate, and its condition.
 
 use super::linear::LeastSquares;
+use crate::clocks::Emissions;
 use crate::network::Network;
 use crate::points::centroid;
 
@@ -12,20 +13,21 @@ const MAX_ITERATIONS: usize = 8;
 pub(crate) struct NetworkPolisher<const D: usize = 2> {
     squares: LeastSquares,
     signs: Vec<f64>,
-    /// Whether offsets are zero and stay so.
-    are_ranges: bool,
+    /// What is known of offsets.
+    emissions: Emissions,
     next: Network<D>,
 }
 
 impl<const D: usize> NetworkPolisher<D> {
     /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as
     /// they are at the start, and returns the condition number of that problem (columns of unit
-    /// length, rigid motions excluded). Offsets stay as they are where `f` are ranges.
+    /// length, rigid motions excluded). Offsets stay as they are where `f` are ranges, and are one unknown where these have a
+    /// constant in common.
     ///
     /// `f` is row-major, receivers in rows. The network stays as it is where a step would not bring
     /// it nearer.
-    pub(crate) fn polish(&mut self, f: &[f64], are_ranges: bool, network: &mut Network<D>) -> f64 {
-        self.are_ranges = are_ranges;
+    pub(crate) fn polish(&mut self, f: &[f64], emissions: Emissions, network: &mut Network<D>) -> f64 {
+        self.emissions = emissions;
         let n = network.transmitters.len();
         self.signs.clear();
         self.signs.extend((0..f.len()).map(|k| if f[k] < network.offsets[k % n] { -1.0 } else { 1.0 }));
@@ -39,7 +41,7 @@ impl<const D: usize> NetworkPolisher<D> {
             if step.iter().any(|d| !d.is_finite()) {
                 break;
             }
-            move_by(step, network, &mut self.next);
+            move_by(step, emissions, network, &mut self.next);
             let next_residual = norm(f, &self.signs, &self.next);
             if next_residual >= residual && residual > 0.0 {
                 // Rounding error: keep the better of the two.
@@ -58,7 +60,11 @@ impl<const D: usize> NetworkPolisher<D> {
     /// position and rotation fixed.
     fn linearise(&mut self, f: &[f64], network: &Network<D>) {
         let (m, n) = (network.receivers.len(), network.transmitters.len());
-        let offsets = if self.are_ranges { 0 } else { n };
+        let offsets = match self.emissions {
+            Emissions::Unknown => n,
+            Emissions::Known => 0,
+            Emissions::Constant => 1,
+        };
         let (rows, unknowns) = (m * n + D * (D + 1) / 2, D * (m + n) + offsets);
         let (jacobian, values) = self.squares.start(rows, unknowns);
         let at = |row: usize, column: usize| column * rows + row;
@@ -71,8 +77,8 @@ impl<const D: usize> NetworkPolisher<D> {
                     jacobian[at(row, D * i + k)] = u;
                     jacobian[at(row, D * (m + j) + k)] = -u;
                 }
-                if !self.are_ranges {
-                    jacobian[at(row, D * (m + n) + j)] = sign;
+                if let Some(offset) = offset_of(j, self.emissions) {
+                    jacobian[at(row, D * (m + n) + offset)] = sign;
                 }
                 values[row] = residual(f, &self.signs, network, row);
             }
@@ -113,8 +119,17 @@ fn norm<const D: usize>(f: &[f64], signs: &[f64], network: &Network<D>) -> f64 {
     (0..f.len()).map(|k| residual(f, signs, network, k).powi(2)).sum::<f64>().sqrt()
 }
 
+/// Which of the unknown offsets is that of transmitter `j`, if it is unknown.
+fn offset_of(j: usize, emissions: Emissions) -> Option<usize> {
+    match emissions {
+        Emissions::Unknown => Some(j),
+        Emissions::Known => None,
+        Emissions::Constant => Some(0),
+    }
+}
+
 /// Makes `next` the network less a step.
-fn move_by<const D: usize>(step: &[f64], network: &Network<D>, next: &mut Network<D>) {
+fn move_by<const D: usize>(step: &[f64], emissions: Emissions, network: &Network<D>, next: &mut Network<D>) {
     let (m, n) = (network.receivers.len(), network.transmitters.len());
     next.receivers.clone_from(&network.receivers);
     next.transmitters.clone_from(&network.transmitters);
@@ -128,8 +143,8 @@ fn move_by<const D: usize>(step: &[f64], network: &Network<D>, next: &mut Networ
         for k in 0..D {
             next.transmitters[j][k] -= step[D * (m + j) + k];
         }
-        if let Some(step) = step.get(D * (m + n) + j) {
-            next.offsets[j] -= step;
+        if let Some(offset) = offset_of(j, emissions) {
+            next.offsets[j] -= step[D * (m + n) + offset];
         }
     }
 }

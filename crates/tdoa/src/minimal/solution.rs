@@ -38,7 +38,7 @@ pub struct RootCounts {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(bound = "[f64; D]: Serialize")]
 pub struct MinimalSolution<const D: usize = 2> {
-    /// Whether the measurements were taken for ranges.
+    /// What was taken for known of offsets.
     pub emissions: Emissions,
     /// The size of the matrix, such as `6r/3s`.
     pub configuration: String,

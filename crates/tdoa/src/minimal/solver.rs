@@ -86,7 +86,8 @@ impl Solver {
     /// 7r/4s linearly. Larger sizes are solved through the best spread part of one of these sizes:
     /// its candidates are extended to all nodes and refined over all measurements.
     ///
-    /// Ranges ([`MinimalOptions::emissions`]) of three receivers and transmitters or more are solved through 3r/3s.
+    /// Ranges ([`MinimalOptions::emissions`]) of three receivers and transmitters or more are solved through 3r/3s, those with
+    /// one unknown constant through 3r/4s or 4r/3s.
     ///
     /// # Errors
     /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, a
@@ -110,10 +111,13 @@ impl Solver {
         monitor: &Monitor,
     ) -> Result<MinimalSolution, MinimalError> {
         options.paths.validate()?;
-        match options.emissions {
-            Emissions::Unknown => {}
-            Emissions::Known => return ranges::solve(&mut self.engines, &ranges::IN_PLANE, measured, options, monitor),
-            Emissions::Constant => return Err(MinimalError::OneConstant),
+        let of_ranges: Option<&[_]> = match options.emissions {
+            Emissions::Unknown => None,
+            Emissions::Known => Some(&ranges::IN_PLANE),
+            Emissions::Constant => Some(&ranges::IN_PLANE_WITH_CONSTANT),
+        };
+        if let Some(methods) = of_ranges {
+            return ranges::solve(&mut self.engines, methods, measured, options, monitor);
         }
         let (m, n) = (measured.receivers(), measured.transmitters());
         check::<2>(measured)?;

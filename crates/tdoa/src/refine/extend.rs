@@ -3,7 +3,6 @@
 
 use super::cancel::{Cancelled, check};
 use super::reseed::locate_transmitter;
-use crate::clocks::Emissions;
 use crate::loss::Loss;
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
@@ -37,8 +36,8 @@ impl<const D: usize> PartialNetwork<D> {
 }
 
 /// Locates all unknown nodes, best observed ones first: transmitters from at least four known
-/// receivers, receivers from at least three known transmitters (one more of each in space; distances of transmitters
-/// take one less), and with one less of them when nothing else is left. `None` if some node cannot be located at all.
+/// receivers, receivers from at least three known transmitters (one more of each in space; transmitters whose offset is
+/// known, or that of all, take one less), and with one less of them when nothing else is left. `None` if some node cannot be located at all.
 pub(crate) fn extend<const D: usize>(
     observations: &Observations<D>,
     part: &PartialNetwork<D>,
@@ -46,15 +45,18 @@ pub(crate) fn extend<const D: usize>(
     monitor: &Monitor,
 ) -> Result<Option<Network<D>>, Cancelled> {
     let mut part = part.clone();
-    for (_, offset) in part.transmitters.iter_mut().flatten() {
-        *offset = observations.of_offset(*offset);
+    let mut offsets: Vec<f64> = part.transmitters.iter().flatten().map(|(_, offset)| *offset).collect();
+    observations.emissions().settle(&mut offsets);
+    for ((_, offset), settled) in part.transmitters.iter_mut().flatten().zip(&offsets) {
+        *offset = *settled;
     }
-    let fewest = if observations.emissions() == Emissions::Known { D } else { D + 1 };
+    let shared = observations.emissions().shared(offsets.first().copied());
+    let fewest = if shared.is_some() { D } else { D + 1 };
     let mut sights = Vec::new();
     for spare in [1, 0] {
         loop {
             let transmitters =
-                locate_transmitters(observations, &mut part, fewest + spare, loss, &mut sights, monitor)?;
+                locate_transmitters(observations, &mut part, shared, fewest + spare, loss, &mut sights, monitor)?;
             let receivers = locate_receivers(observations, &mut part, D + spare, loss, &mut sights, monitor)?;
             if transmitters + receivers == 0 {
                 break;
@@ -71,6 +73,7 @@ pub(crate) fn extend<const D: usize>(
 fn locate_transmitters<const D: usize>(
     observations: &Observations<D>,
     part: &mut PartialNetwork<D>,
+    shared: Option<f64>,
     least: usize,
     loss: &Loss,
     sights: &mut Vec<Sight<D>>,
@@ -89,7 +92,7 @@ fn locate_transmitters<const D: usize>(
         sights.clear();
         sights.extend(observations.of_transmitter(j).iter().filter_map(sight));
         if sights.len() >= least
-            && let Some(located) = locate_transmitter(observations, sights, None, loss)
+            && let Some(located) = locate_transmitter(observations, sights, shared, loss)
         {
             part.transmitters[j] = Some((located.position, located.offset));
             found += 1;

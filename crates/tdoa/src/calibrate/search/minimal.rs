@@ -10,6 +10,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::calibrate::search::hypotheses::{Hypotheses, generator};
 use crate::clocks::Emissions;
+use crate::degeneracy::emissions_alone;
 use crate::duplicates::step;
 use crate::median::median;
 use crate::minimal::spatial::{self, five_transmitters};
@@ -40,6 +41,8 @@ const IN_PLANE: Shapes = Shapes { sizes: &[(6, 3), (5, 4), (4, 5)], for_a_call: 
 const LINEAR: Shapes = Shapes { sizes: &[(9, 5), (10, 5)], for_a_call: 32, calls: usize::MAX };
 /// In space with fewer nodes a subset takes a tenth of a second to some seconds, as long as the whole search.
 const BY_PATHS: Shapes = Shapes { sizes: &[(8, 5), (7, 5), (6, 6), (10, 4)], for_a_call: 1, calls: 1 };
+/// Ranges with a constant in the plane: a subset takes a millisecond.
+const CONSTANT_IN_PLANE: Shapes = Shapes { sizes: &[(4, 3), (3, 4)], for_a_call: 1, calls: usize::MAX };
 /// Ranges in the plane: a subset takes a tenth of a millisecond.
 const RANGES_IN_PLANE: Shapes = Shapes { sizes: &[(3, 3)], for_a_call: 4, calls: usize::MAX };
 /// Ranges in space: a subset takes some milliseconds.
@@ -55,12 +58,13 @@ fn shapes<const D: usize>(measured: &Pseudoranges) -> Option<Shapes> {
     let fits = |shapes: &Shapes| shapes.sizes.iter().any(|&(i, j)| m >= i && n >= j);
     // Unknowns less the six of a rigid motion.
     let few = measured.observed() + 6 <= 3 * m + 4 * n + MOST_SPARE;
-    match D {
-        2 if measured.emissions() == Emissions::Known => Some(RANGES_IN_PLANE).filter(fits),
-        3 if measured.emissions() == Emissions::Known => Some(RANGES_IN_SPACE).filter(fits),
-        2 => Some(IN_PLANE).filter(fits),
-        3 if fits(&LINEAR) => Some(LINEAR),
-        3 if few => Some(BY_PATHS).filter(fits),
+    match (D, emissions_alone(measured)) {
+        (2, Emissions::Known) => Some(RANGES_IN_PLANE).filter(fits),
+        (3, Emissions::Known) => Some(RANGES_IN_SPACE).filter(fits),
+        (2, Emissions::Constant) => Some(CONSTANT_IN_PLANE).filter(fits),
+        (2, Emissions::Unknown) => Some(IN_PLANE).filter(fits),
+        (3, _) if fits(&LINEAR) => Some(LINEAR),
+        (3, _) if few => Some(BY_PATHS).filter(fits),
         _ => None,
     }
 }
@@ -80,7 +84,7 @@ const COARSE: f64 = 1e-3;
 /// measured subset: 6r/3s, 5r/4s or 4r/5s in the plane. In space a call proposes the networks of
 /// several subsets of 9r/5s or 10r/5s; of fewer nodes, where few measurements are spare, all networks of
 /// one subset of 8r/5s, 7r/5s, 6r/6s or 10r/4s ([`crate::minimal::spatial`]). Subsets of ranges are 3r/3s in the plane,
-/// and 5r/5s, 4r/6s or 6r/4s in space.
+/// with a constant 4r/3s or 3r/4s, and 5r/5s, 4r/6s or 6r/4s in space.
 pub struct MinimalHypotheses {
     options: MinimalOptions,
     in_plane_solvers: Mutex<Vec<Solver>>,
@@ -131,6 +135,10 @@ impl MinimalHypotheses {
 
     /// Networks that explain a small matrix and have hardly a negative distance.
     fn networks<const D: usize>(&self, part: &Pseudoranges) -> Vec<Network<D>> {
+        // In space there is no exact solver of a constant.
+        let emissions = emissions_alone(part);
+        let in_space = D == 3 && emissions == Emissions::Constant;
+        let part = &part.clone().with_emissions(if in_space { Emissions::Unknown } else { emissions });
         match D {
             2 => self.in_plane(part).iter().map(cast).collect(),
             3 => self.in_space(part).iter().map(cast).collect(),
@@ -140,8 +148,7 @@ impl MinimalHypotheses {
 
     /// The settings for a part of the measurements.
     fn options(&self, part: &Pseudoranges) -> MinimalOptions {
-        let are_ranges = part.emissions() == Emissions::Known;
-        MinimalOptions { emissions: Emissions::of_ranges(are_ranges), ..self.options.clone() }
+        MinimalOptions { emissions: part.emissions(), ..self.options.clone() }
     }
 
     fn in_plane(&self, part: &Pseudoranges) -> Vec<Network> {
@@ -284,7 +291,7 @@ mod tests {
     use crate::{CalibrateOptions, Emissions, Layout, SimulateOptions, calibrate, simulate};
 
     /// Ranges of a smallest size are calibrated: the truth is the network or one of its alternatives.
-    fn the_truth_is_listed_of_ranges<const D: usize>(receivers: usize, transmitters: usize)
+    fn the_truth_is_listed_of_ranges<const D: usize>(emissions: Emissions, receivers: usize, transmitters: usize)
     where
         Dimension<D>: Calibrates<D>,
     {
@@ -292,10 +299,10 @@ mod tests {
             let mut options = SimulateOptions::<D>::new();
             (options.receivers, options.transmitters) = (receivers, transmitters);
             (options.layout, options.noise, options.seed) = (Layout::Normal, 1e-6, seed);
-            options.emissions = Emissions::Known;
+            options.emissions = emissions;
             let simulation = simulate(&options).unwrap();
             let mut options = CalibrateOptions::<D>::new();
-            (options.clocks.emissions, options.seed, options.sigma) = (Emissions::Known, seed, Some(1e-6));
+            (options.clocks.emissions, options.seed, options.sigma) = (emissions, seed, Some(1e-6));
             let found = calibrate(&simulation.pseudoranges, &options).unwrap();
             let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
             let errors = all.filter_map(|receivers| {
@@ -303,16 +310,23 @@ mod tests {
                 Some(align(&placed?, &simulation.network.receivers, false)?.rms)
             });
             let least = errors.fold(f64::INFINITY, f64::min);
-            assert!(least < 1e-3, "{receivers}r/{transmitters}s, seed {seed}: {least}");
+            // No measurement is spare, so that errors of a micrometre may grow a thousandfold.
+            assert!(least < 1e-2, "{receivers}r/{transmitters}s, seed {seed}: {least}");
         }
     }
 
     #[test]
     fn smallest_networks_of_ranges_are_calibrated() {
-        the_truth_is_listed_of_ranges::<2>(3, 3);
-        the_truth_is_listed_of_ranges::<3>(4, 6);
-        the_truth_is_listed_of_ranges::<3>(6, 4);
-        the_truth_is_listed_of_ranges::<3>(5, 5);
+        the_truth_is_listed_of_ranges::<2>(Emissions::Known, 3, 3);
+        the_truth_is_listed_of_ranges::<3>(Emissions::Known, 4, 6);
+        the_truth_is_listed_of_ranges::<3>(Emissions::Known, 6, 4);
+        the_truth_is_listed_of_ranges::<3>(Emissions::Known, 5, 5);
+    }
+
+    #[test]
+    fn smallest_networks_of_ranges_with_a_constant_are_calibrated() {
+        the_truth_is_listed_of_ranges::<2>(Emissions::Constant, 3, 4);
+        the_truth_is_listed_of_ranges::<2>(Emissions::Constant, 4, 3);
     }
 
     /// Where no measurement is spare in space, random networks alone miss the truth, of the first of these

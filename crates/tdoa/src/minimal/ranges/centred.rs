@@ -1,28 +1,30 @@
 //! Squares of ranges, doubly centred.
 
+use super::pencil::{DEGENERATE, Pencil, centred};
+use crate::clocks::Emissions;
 use crate::minimal::normalised::Normalised;
 use crate::pseudoranges::Pseudoranges;
 use faer::Mat;
 
-/// Nodes span no plane or space if a singular value is less than this share of the largest one.
-const DEGENERATE: f64 = 1e-12;
 /// A node does not depend on the others if its number is less than this share of the largest one, which has fewer digits than
 /// the ranges.
 const DEPENDENT: f64 = 1e-9;
+/// A constant leaves no range below zero by more than this, in units of the ranges.
+const NEGATIVE: f64 = 1e-6;
 
 /// `(r_i - r_1) . (s_j - s_1)` of all receivers and transmitters but the first, by ranges in rows of `n`.
 fn products(matrix: &[f64], n: usize) -> Mat<f64> {
-    let square = |i: usize, j: usize| matrix[i * n + j] * matrix[i * n + j];
-    Mat::from_fn(matrix.len() / n - 1, n - 1, |i, j| {
-        0.5 * (square(i + 1, 0) + square(0, j + 1) - square(0, 0) - square(i + 1, j + 1))
-    })
+    centred(matrix.len() / n, n, |k| matrix[k] * matrix[k])
 }
 
 /// How well the nodes of either kind span D dimensions: the last of D singular values as a share of the first; zero
-/// if they do not, as far as doubles tell.
+/// if they do not, as far as doubles tell. Of ranges with an unknown constant, for the worst of the constants.
 pub(super) fn span<const D: usize>(measured: &Pseudoranges) -> f64 {
-    let singular =
-        products(&Normalised::new(measured).matrix, measured.transmitters()).singular_values().unwrap_or_default();
+    let (matrix, n) = (Normalised::new(measured).matrix, measured.transmitters());
+    if measured.emissions() == Emissions::Constant {
+        return Pencil::new(&matrix, n).span::<D>(matrix.iter().copied().fold(f64::INFINITY, f64::min) + NEGATIVE);
+    }
+    let singular = products(&matrix, n).singular_values().unwrap_or_default();
     match (singular.first(), singular.get(D - 1)) {
         (Some(first), Some(last)) if *last > DEGENERATE * first => last / first,
         _ => 0.0,

@@ -5,6 +5,7 @@
 //! the ranges of these receivers; a further receiver is an affine combination of them.
 
 use super::centred::dependence;
+use crate::clocks::Emissions;
 use crate::generated::{five_five_ranges, four_six_ranges, three_three_ranges};
 use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
@@ -19,14 +20,14 @@ use num_traits::Num;
 use std::array::from_fn;
 use std::marker::PhantomData;
 
-/// What distinguishes the sizes.
+/// What distinguishes the sizes, here and [with a constant](super::constant).
 pub(crate) trait Size<const D: usize>: 'static {
     type System: Evaluate + 'static;
     const NAME: &'static str;
     const FAMILY: &'static str;
     const RECEIVERS: usize;
     const TRANSMITTERS: usize;
-    /// Powers of the unit, that of squares, for the unknowns.
+    /// Powers of the unit, that of squares, for the unknowns; with a constant that of lengths.
     const WEIGHTS: &'static [i32];
     /// Orders of the first D + 1 receivers, that of the data first.
     const CHARTS: &'static [&'static [usize]];
@@ -35,7 +36,7 @@ pub(crate) trait Size<const D: usize>: 'static {
 }
 
 /// Defines a size.
-macro_rules! size {
+macro_rules! define_size {
     ($doc:literal, $size:ident, $dimensions:literal, $module:ident, $file:literal, $name:literal, $m:literal, $n:literal, $weights:expr, $charts:expr) => {
         #[doc = $doc]
         pub(crate) enum $size {}
@@ -60,7 +61,9 @@ macro_rules! size {
     };
 }
 
-size!(
+pub(super) use define_size;
+
+define_size!(
     "Three receivers, three transmitters in the plane: 8 paths.",
     ThreeThree,
     2,
@@ -72,7 +75,7 @@ size!(
     [1, 1, 0],
     IN_PLANE
 );
-size!(
+define_size!(
     "Four receivers, six transmitters in space: 38 paths.",
     FourSix,
     3,
@@ -84,7 +87,7 @@ size!(
     [1, 1, 1, 0, 0, 0],
     IN_SPACE
 );
-size!(
+define_size!(
     "Five receivers, five transmitters in space: 42 paths.",
     FiveFive,
     3,
@@ -97,8 +100,8 @@ size!(
     IN_SPACE
 );
 
-const IN_PLANE: [&[usize]; 6] = [&[0, 1, 2], &[1, 2, 0], &[2, 0, 1], &[1, 0, 2], &[0, 2, 1], &[2, 1, 0]];
-const IN_SPACE: [&[usize]; 8] = [
+pub(super) const IN_PLANE: [&[usize]; 6] = [&[0, 1, 2], &[1, 2, 0], &[2, 0, 1], &[1, 0, 2], &[0, 2, 1], &[2, 1, 0]];
+pub(super) const IN_SPACE: [&[usize]; 8] = [
     &[0, 1, 2, 3],
     &[1, 2, 3, 0],
     &[2, 3, 0, 1],
@@ -122,7 +125,7 @@ impl<S: Size<D>, const D: usize> Formulation for Gram<S, D> {
     const WEIGHTS: &'static [i32] = S::WEIGHTS;
     /// Squares of ranges, and the square `c` of a further receiver.
     const SCALED: usize = (D + 1) * S::TRANSMITTERS + S::RECEIVERS - (D + 1);
-    const RANGES: bool = true;
+    const EMISSIONS: Emissions = Emissions::Known;
     const CHARTS: usize = S::CHARTS.len();
 
     fn system() -> &'static Self::System {
@@ -149,9 +152,7 @@ impl<S: Size<D>, const D: usize> Formulation for Gram<S, D> {
     }
 
     fn leave(chart: usize, x: &[Complex64]) -> Point {
-        let mut inverse = [0; 4];
-        S::CHARTS[chart].iter().enumerate().for_each(|(k, &i)| inverse[i] = k);
-        reordered::<D>(&inverse[..=D], x)
+        reordered::<D>(&inverse(S::CHARTS[chart])[..=D], x)
     }
 
     /// The receiver that the others determine best comes last.
@@ -186,9 +187,7 @@ impl<S: Size<D>, const D: usize> Formulation for Gram<S, D> {
     }
 
     fn offsets(_: &[Complex64], x: &[Complex64]) -> Point {
-        let gram = matrix::<Complex64, D>(x);
-        let between = |(i, k): (usize, usize)| product(&gram, [i, k], [i, k]);
-        (0..=D).flat_map(|i| (0..i).map(move |k| (i, k))).map(between).collect()
+        distances::<D>(x)
     }
 }
 
@@ -198,28 +197,39 @@ impl<S: Size<D>, const D: usize> FormulationIn<D> for Gram<S, D> {
         if !x[..D].iter().all(|&e| e > 0.0) {
             return None;
         }
-        let triangle = triangle::<f64, D>(x);
-        let basis: [[f64; D]; D] = triangle.map(|row| from_fn(|k| row[k] * x[k].sqrt()));
-        let mut receivers = vec![[0.0; D]];
-        receivers.extend(basis);
+        let (mut receivers, transmitters) = placed(x, n, |i, j| f[i * n + j]);
         if let Some((_, weights)) = f[(D + 1) * n..].split_first() {
             let sum: f64 = weights.iter().sum();
             let others = || receivers.iter().zip(weights);
             receivers.push(from_fn(|k| others().map(|(r, weight)| weight * r[k]).sum::<f64>() / sum));
         }
-        let transmitter = |j: usize| {
-            let mut place = [0.0; D];
-            for (i, r) in basis.iter().enumerate() {
-                // r . s, less what the axes before account for.
-                let along = 0.5 * (r.iter().map(|x| x * x).sum::<f64>() + f[j] - f[(i + 1) * n + j]);
-                let before: f64 = (0..i).map(|k| r[k] * place[k]).sum();
-                place[i] = (along - before) / r[i];
-            }
-            place
-        };
-        let network = Network::new(receivers, (0..n).map(transmitter).collect(), vec![0.0; n]);
+        let network = Network::new(receivers, transmitters, vec![0.0; n]);
         network.is_finite().then_some(network)
     }
+}
+
+/// D + 1 receivers, the first one in the origin, of a Gram matrix with positive `e`, and `n` transmitters by the squares of
+/// their distances from receiver `i`.
+pub(super) fn placed<const D: usize>(
+    x: &[f64],
+    n: usize,
+    square: impl Fn(usize, usize) -> f64,
+) -> (Vec<[f64; D]>, Vec<[f64; D]>) {
+    let triangle = triangle::<f64, D>(x);
+    let basis: [[f64; D]; D] = triangle.map(|row| from_fn(|k| row[k] * x[k].sqrt()));
+    let mut receivers = vec![[0.0; D]];
+    receivers.extend(basis);
+    let transmitter = |j: usize| {
+        let mut place = [0.0; D];
+        for (i, r) in basis.iter().enumerate() {
+            // r . s, less what the axes before account for.
+            let along = 0.5 * (r.iter().map(|x| x * x).sum::<f64>() + square(0, j) - square(i + 1, j));
+            let before: f64 = (0..i).map(|k| r[k] * place[k]).sum();
+            place[i] = (along - before) / r[i];
+        }
+        place
+    };
+    (receivers, (0..n).map(transmitter).collect())
 }
 
 /// The unit lower triangular matrix of the unknowns.
@@ -245,8 +255,22 @@ fn product<T: Num + Copy, const D: usize>(gram: &[[T; D]; D], [a, b]: [usize; 2]
     entry(a, c) - entry(a, d) - entry(b, c) + entry(b, d)
 }
 
-/// The unknowns with the receivers in another order.
-fn reordered<const D: usize>(order: &[usize], x: &[Complex64]) -> Point {
+/// The squares of the distances of the receivers.
+pub(super) fn distances<const D: usize>(x: &[Complex64]) -> Point {
+    let gram = matrix::<Complex64, D>(x);
+    let between = |(i, k): (usize, usize)| product(&gram, [i, k], [i, k]);
+    (0..=D).flat_map(|i| (0..i).map(move |k| (i, k))).map(between).collect()
+}
+
+/// The order that undoes one of at most four nodes.
+pub(super) fn inverse(order: &[usize]) -> [usize; 4] {
+    let mut inverse = [0; 4];
+    order.iter().enumerate().for_each(|(k, &i)| inverse[i] = k);
+    inverse
+}
+
+/// The unknowns of the Gram matrix with the receivers in another order.
+pub(super) fn reordered<const D: usize>(order: &[usize], x: &[Complex64]) -> Point {
     let old = matrix::<Complex64, D>(x);
     let mut rest: [[Complex64; D]; D] =
         from_fn(|i| from_fn(|j| product(&old, [order[i + 1], order[0]], [order[j + 1], order[0]])));

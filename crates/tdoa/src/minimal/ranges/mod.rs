@@ -1,16 +1,22 @@
-//! Ranges: distances without offsets.
+//! Ranges: distances without offsets, or with one unknown constant.
 //!
 //! `|r_i - s_j|^2`, doubly centred, is `-2 R'S` and has as many singular values as dimensions, which nodes in one
 //! line or plane lack (`centred`). D + 1 receivers are a basis of all nodes, and unknown are their distances from each other
-//! alone (`gram`).
+//! alone (`gram`). With a constant, which is one unknown more (`constant`), the centred squares are linear in it (`pencil`).
 
 mod centred;
+mod constant;
 mod gram;
+mod pencil;
 mod solve;
 
 #[cfg(test)]
+pub(super) use constant::{GramAndConstant, ThreeFour};
+#[cfg(test)]
 pub(super) use gram::{FiveFive, FourSix, Gram, ThreeThree};
-pub(super) use solve::{IN_PLANE, IN_SPACE, solve};
+pub(super) use solve::{IN_PLANE, IN_PLANE_WITH_CONSTANT, IN_SPACE, solve};
 
+#[cfg(test)]
+mod constant_tests;
 #[cfg(test)]
 mod tests;

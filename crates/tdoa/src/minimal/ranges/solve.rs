@@ -1,8 +1,8 @@
-//! The entry point for ranges of all sizes.
+//! The entry point for ranges of all sizes, with a constant or without.
 
 use super::centred::{span, spread};
+use super::constant::{GramAndConstant, ThreeFour};
 use super::gram::{FiveFive, FourSix, Gram, ThreeThree};
-use crate::clocks::Emissions;
 use crate::loss::Loss;
 use crate::minimal::check::check;
 use crate::minimal::doubts::{allowed, warnings_of_ranges};
@@ -41,17 +41,17 @@ pub(in crate::minimal) struct Method<const D: usize> {
 /// Methods in the plane.
 pub(in crate::minimal) const IN_PLANE: [Method<2>; 1] = [by_paths::<Gram<ThreeThree, 2>, 2>(span::<2>)];
 
+/// Methods in the plane for ranges with one unknown constant.
+pub(in crate::minimal) const IN_PLANE_WITH_CONSTANT: [Method<2>; 2] = [
+    by_paths::<GramAndConstant<ThreeFour, 2>, 2>(span::<2>),
+    exchanging("4r/3s", by_paths::<GramAndConstant<ThreeFour, 2>, 2>(span::<2>)),
+];
+
 /// Methods in space; the one that takes most measurements comes first.
 pub(in crate::minimal) const IN_SPACE: [Method<3>; 3] = [
     by_paths::<Gram<FiveFive, 3>, 3>(spread::<3>),
     by_paths::<Gram<FourSix, 3>, 3>(span::<3>),
-    Method {
-        name: "6r/4s",
-        receivers: 6,
-        transmitters: 4,
-        exchanges: true,
-        ..by_paths::<Gram<FourSix, 3>, 3>(span::<3>)
-    },
+    exchanging("6r/4s", by_paths::<Gram<FourSix, 3>, 3>(span::<3>)),
 ];
 
 const fn by_paths<F: FormulationIn<D> + 'static, const D: usize>(spread: fn(&Pseudoranges) -> f64) -> Method<D>
@@ -68,7 +68,13 @@ where
     }
 }
 
-/// Every network that explains ranges, best first.
+/// A method with the roles of receivers and transmitters exchanged.
+const fn exchanging<const D: usize>(name: &'static str, method: Method<D>) -> Method<D> {
+    let (receivers, transmitters) = (method.transmitters, method.receivers);
+    Method { name, receivers, transmitters, exchanges: true, ..method }
+}
+
+/// Every network that explains ranges, best first; `methods` are those of `options.emissions`.
 pub(in crate::minimal) fn solve<const D: usize>(
     engines: &mut Engines<D>,
     methods: &[Method<D>],
@@ -77,7 +83,7 @@ pub(in crate::minimal) fn solve<const D: usize>(
     monitor: &Monitor,
 ) -> Result<MinimalSolution<D>, MinimalError> {
     engines.none_used();
-    let measured = &measured.clone().with_emissions(Emissions::Known);
+    let measured = &measured.clone().with_emissions(options.emissions);
     check::<D>(measured)?;
     if options.start != MinimalStart::Stored {
         return Err(MinimalError::StoredOnly { configuration: measured.configuration() });
@@ -180,13 +186,16 @@ fn exchanged(part: &Pseudoranges) -> Result<Pseudoranges, MinimalError> {
     let (m, n, values) = (part.receivers(), part.transmitters(), part.cells().values());
     let cells = (0..m * n).map(|k| (k / m, k % m, values[k % m * n + k / m]));
     let exchanged = Pseudoranges::from_cells(n, m, cells);
-    exchanged.map(|ranges| ranges.with_emissions(Emissions::Known)).map_err(|_| MinimalError::NoNetwork)
+    exchanged.map(|ranges| ranges.with_emissions(part.emissions())).map_err(|_| MinimalError::NoNetwork)
 }
 
 /// Makes receivers of transmitters, the first of them in the origin.
 fn exchange<const D: usize>(network: &mut Network<D>) {
     std::mem::swap(&mut network.receivers, &mut network.transmitters);
-    network.offsets = vec![0.0; network.transmitters.len()];
+    // All are one.
+    let offset = network.offsets[0];
+    network.offsets.clear();
+    network.offsets.resize(network.transmitters.len(), offset);
     let origin = network.receivers[0];
     for place in network.receivers.iter_mut().chain(&mut network.transmitters) {
         *place = minus(*place, origin);
