@@ -155,7 +155,7 @@ fn ranges_with<const D: usize>(constant: f64, receivers: &[[f64; D]], transmitte
 }
 
 /// Networks of the smallest sizes by their ranges alone, with one unknown constant or without: the true one is among those
-/// listed, and roots are as many as theory says.
+/// listed, and roots are as many as theory says: all four constants of this 5r/5s are real.
 #[test]
 fn ranges_of_the_smallest_sizes() {
     let places =
@@ -172,6 +172,7 @@ fn ranges_of_the_smallest_sizes() {
         ("3", "known", "5r/5s", 42, ranges(&places[..5], &others[..5])),
         ("2", "constant", "3r/4s", 43, ranges_with(constant, &plane[..3], &other_plane[..4])),
         ("2", "constant", "4r/3s", 43, ranges_with(constant, &plane[..4], &other_plane[..3])),
+        ("3", "constant", "5r/5s", 168, ranges_with(constant, &places[..5], &others[..5])),
     ];
     for (dimensions, emissions, size, roots, table) in cases {
         let (json, message, status) =
@@ -211,6 +212,9 @@ fn what_is_no_table_of_ranges_is_said() {
     let (_, message, status) = solve_with(&small, &["--ranges", "--dimensions", "3"]);
     assert_eq!(status, Some(1), "{message}");
     assert!(message.contains("6 receivers with 4 transmitters, 5 with 5, and 4 with 6"), "{message}");
+    let (_, message, status) = solve_with(&ranges(&all[..4], &all), &["--emissions", "constant", "--dimensions", "3"]);
+    assert_eq!(status, Some(1), "{message}");
+    assert!(message.contains("7 receivers with 4 transmitters, 5 with 5, and 4 with 7"), "{message}");
     let (_, message, status) = solve_with("1,2,3\n2,-1.5,2\n3,1,2.5\n", &["--ranges"]);
     assert_eq!(status, Some(1), "{message}");
     assert!(message.contains("the range of receiver r2 and transmitter s2 is negative (-1.5 m)"), "{message}");

@@ -43,6 +43,8 @@ pub(crate) struct Engine<F: Formulation, const D: usize = 2> {
     /// The parameters of the last call.
     given: Vec<f64>,
     target: Vec<Complex64>,
+    /// Targets and roots of earlier calls that belong to the same measurements.
+    kept: Vec<(Vec<Complex64>, Vec<Vec<Complex64>>)>,
 }
 
 impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
@@ -66,7 +68,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
             squares: LeastSquares::default(),
             polisher: NetworkPolisher::default(),
         };
-        Engine { finder, roots, data: Normalised::default(), given: Vec::new(), target: Vec::new() }
+        Engine { finder, roots, data: Normalised::default(), given: Vec::new(), target: Vec::new(), kept: Vec::new() }
     }
 
     /// Every network that explains a matrix of the formulation's size that has passed the checks,
@@ -125,14 +127,32 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         self.finder.tracker.paths().results()
     }
 
-    /// Proofs that the complex roots of the last call exist and are distinct; `None` if the monitor is cancelled.
-    pub(crate) fn prove(&self, monitor: &Monitor) -> Option<RootProofs> {
+    /// Forgets the roots that were kept.
+    pub(crate) fn forget(&mut self) {
+        self.kept.clear();
+    }
+
+    /// Keeps the roots of the last call, to be proved with those of the next one.
+    pub(crate) fn keep(&mut self) {
+        self.kept.push((self.target.clone(), self.last_roots()));
+    }
+
+    fn last_roots(&self) -> Vec<Vec<Complex64>> {
         let ends = self.finder.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
-        let roots: Vec<Vec<Complex64>> = match &self.finder.from_scratch {
+        match &self.finder.from_scratch {
             Some(fibre) => fibre.iter().map(<[Complex64]>::to_vec).collect(),
             None => ends.map(|(_, x)| x.to_vec()).collect(),
-        };
-        prove::<F>(&self.target, &roots, monitor)
+        }
+    }
+
+    /// Proofs that the complex roots of the last call, and those kept, exist and are distinct, of one call each; `None` if the
+    /// monitor is cancelled.
+    pub(crate) fn prove(&self, monitor: &Monitor) -> Option<RootProofs> {
+        let mut all = prove::<F>(&self.target, &self.last_roots(), monitor)?;
+        for (target, roots) in &self.kept {
+            all += prove::<F>(target, roots, monitor)?;
+        }
+        Some(all)
     }
 }
 

@@ -20,6 +20,12 @@ pub(crate) trait PathSolver<const D: usize>: Send + Sync {
         monitor: &Monitor,
     ) -> Result<MinimalSolution<D>, MinimalError>;
 
+    /// [`Engine::forget`].
+    fn forget(&mut self);
+
+    /// [`Engine::keep`].
+    fn keep(&mut self);
+
     /// [`Engine::records`].
     fn records(&self) -> &[PathResult];
 
@@ -38,6 +44,14 @@ where
         monitor: &Monitor,
     ) -> Result<MinimalSolution<D>, MinimalError> {
         Engine::solve(self, measured, options, monitor)
+    }
+
+    fn forget(&mut self) {
+        Engine::forget(self);
+    }
+
+    fn keep(&mut self) {
+        Engine::keep(self);
     }
 
     fn records(&self) -> &[PathResult] {
@@ -70,7 +84,9 @@ impl<const D: usize> Engines<D> {
             self.all.len() - 1
         });
         self.last = Some(place);
-        &mut *self.all[place].1
+        let engine = &mut *self.all[place].1;
+        engine.forget();
+        engine
     }
 
     /// From now on there are no paths and no roots to prove.

@@ -73,9 +73,9 @@ pub enum MinimalError {
         /// Name of the transmitter.
         transmitter: String,
     },
-    /// Ranges in space with a constant that is not known.
+    /// Ranges in space with a constant that is not known, of fewer nodes than are solved.
     #[error(
-        "ranges in space with one unknown constant are not solved exactly: use `calibrate`, or leave the emissions unknown, so that every \
+        "ranges in space with one unknown constant are solved exactly from 5 receivers and 5 transmitters up: use `calibrate`, or leave the emissions unknown, so that every \
          transmitter has an offset"
     )]
     OneConstant,

@@ -6,6 +6,7 @@ use hc::poly::{ComplexInterval, System, parse};
 use hc::{Monitor, Run};
 use num_complex::Complex64;
 use serde::Serialize;
+use std::ops::AddAssign;
 
 /// What interval arithmetic proves about the complex roots that a solver has found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -18,6 +19,16 @@ pub struct RootProofs {
     pub real: usize,
     /// Number of pairs of roots that are not proved different.
     pub unseparated: usize,
+}
+
+impl AddAssign for RootProofs {
+    /// Adds the proofs for other parameters.
+    fn add_assign(&mut self, more: RootProofs) {
+        self.roots += more.roots;
+        self.proved += more.proved;
+        self.real += more.real;
+        self.unseparated += more.unseparated;
+    }
 }
 
 /// Puts the roots `points` for the parameters `target` to the test of Krawczyk, in every chart

@@ -22,7 +22,7 @@ fn products(matrix: &[f64], n: usize) -> Mat<f64> {
 pub(super) fn span<const D: usize>(measured: &Pseudoranges) -> f64 {
     let (matrix, n) = (Normalised::new(measured).matrix, measured.transmitters());
     if measured.emissions() == Emissions::Constant {
-        return Pencil::new(&matrix, n).span::<D>(matrix.iter().copied().fold(f64::INFINITY, f64::min) + NEGATIVE);
+        return Pencil::new(&matrix, n).span::<D>(most(&matrix));
     }
     let singular = products(&matrix, n).singular_values().unwrap_or_default();
     match (singular.first(), singular.get(D - 1)) {
@@ -36,13 +36,29 @@ pub(super) fn span<const D: usize>(measured: &Pseudoranges) -> f64 {
 /// kind lie in one line or plane, as far as doubles tell.
 pub(super) fn spread<const D: usize>(measured: &Pseudoranges) -> f64 {
     let (matrix, m, n) = (Normalised::new(measured).matrix, measured.receivers(), measured.transmitters());
+    let constants = match measured.emissions() {
+        Emissions::Constant => Pencil::new(&matrix, n).real_constants(0.0),
+        Emissions::Known | Emissions::Unknown => vec![0.0],
+    };
+    let most = most(&matrix);
+    let at = |c: &f64| least_dependence(&matrix.iter().map(|f| f - c).collect::<Vec<f64>>(), m, n);
+    constants.iter().filter(|&&c| c <= most).map(at).fold(span::<D>(measured), f64::min)
+}
+
+/// The largest constant of some ranges, which leaves none of them below zero.
+fn most(matrix: &[f64]) -> f64 {
+    matrix.iter().copied().fold(f64::INFINITY, f64::min) + NEGATIVE
+}
+
+/// The least of the numbers by which nodes of either kind depend on each other, as a share of the largest one.
+fn least_dependence(matrix: &[f64], m: usize, n: usize) -> f64 {
     let transposed: Vec<f64> = (0..m * n).map(|k| matrix[k % m * n + k / m]).collect();
     let share = |matrix: &[f64], n: usize| {
         let sizes: Vec<f64> = dependence(matrix, n).iter().flatten().map(|x| x.abs()).collect();
         let (least, most) = sizes.iter().fold((f64::INFINITY, 0.0f64), |(l, m), &x| (l.min(x), m.max(x)));
         if least > DEPENDENT * most { least / most } else { 0.0 }
     };
-    span::<D>(measured).min(share(&matrix, n)).min(share(&transposed, m))
+    share(matrix, n).min(share(&transposed, m))
 }
 
 /// Numbers that add up to zero, of which `sum_i x_i |r_i - s_j|^2` is the same for all transmitters: how D + 2 receivers

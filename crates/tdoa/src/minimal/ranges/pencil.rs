@@ -9,6 +9,9 @@ pub(super) const DEGENERATE: f64 = 1e-12;
 /// Newton steps to where a singular value vanishes, at most; it converges quadratically.
 const STEPS: usize = 8;
 
+/// A constant is real if its imaginary part is less than this share of its size, as of one that two have become.
+const NEARLY_REAL: f64 = 1e-7;
+
 /// The matrix `A - c B` of the products `(r_i - r_1) . (s_j - s_1)`, whose rank is that of the nodes if `c` is the constant.
 pub(super) struct Pencil {
     a: Mat<f64>,
@@ -39,6 +42,15 @@ impl Pencil {
         let part = Pencil { a: &left * &self.a * &right, b: &left * &self.b * &right };
         let at = |c: &Complex64| self.span_near::<D>(c.re).filter(|(c, _)| *c <= most);
         part.constants().iter().filter_map(at).map(|(_, span)| span).fold(1.0, f64::min)
+    }
+
+    /// Real constants at which a square pencil is singular, in ascending order; the real parts of those whose imaginary
+    /// parts are `near` zero or, of two that are one but for rounding, less.
+    pub(super) fn real_constants(&self, near: f64) -> Vec<f64> {
+        let is_real = |c: &Complex64| c.im.abs() <= near.max(NEARLY_REAL * (1.0 + c.norm()));
+        let mut all: Vec<f64> = self.constants().iter().filter(|c| is_real(c)).map(|c| c.re).collect();
+        all.dedup();
+        all
     }
 
     /// Constants at which a square pencil is singular.

@@ -2,6 +2,7 @@
 
 use super::centred::{span, spread};
 use super::constant::{GramAndConstant, ThreeFour};
+use super::five_five;
 use super::gram::{FiveFive, FourSix, Gram, ThreeThree};
 use crate::loss::Loss;
 use crate::minimal::check::check;
@@ -68,6 +69,16 @@ where
     }
 }
 
+/// Methods in space for ranges with one unknown constant; the one with the fewest paths comes first.
+pub(in crate::minimal) const IN_SPACE_WITH_CONSTANT: [Method<3>; 1] = [Method {
+    name: "5r/5s",
+    receivers: 5,
+    transmitters: 5,
+    exchanges: false,
+    spread: spread::<3>,
+    solve: five_five::solve,
+}];
+
 /// A method with the roles of receivers and transmitters exchanged.
 const fn exchanging<const D: usize>(name: &'static str, method: Method<D>) -> Method<D> {
     let (receivers, transmitters) = (method.transmitters, method.receivers);
@@ -101,6 +112,9 @@ pub(in crate::minimal) fn solve<const D: usize>(
         if best.is_some() {
             break;
         }
+    }
+    if methods.iter().all(|method| m < method.receivers || n < method.transmitters) {
+        return Err(MinimalError::OneConstant);
     }
     let Some((_, method, part)) = best else {
         return Err(match (span::<D>(measured) > 0.0, D) {

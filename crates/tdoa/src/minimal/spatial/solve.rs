@@ -51,7 +51,8 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 /// four is solved by homotopy continuation from a stored fibre, on the threads of the current rayon pool, and
 /// extended in the same way. The equations are those of the paper, one dimension more.
 ///
-/// Ranges ([`MinimalOptions::emissions`]) are solved through 5r/5s, 4r/6s or 6r/4s, with 42 or 38 paths.
+/// Ranges ([`MinimalOptions::emissions`]) are solved through 5r/5s, 4r/6s or 6r/4s, with 42 or 38 paths; those with one
+/// unknown constant through 5r/5s, with 42 paths for each real one of the four constants that a determinant leaves.
 ///
 /// Measurements with more errors than `tolerance` allows make a warning: the network is then not to be
 /// relied upon, and need not be that of least squares.
@@ -95,10 +96,13 @@ impl Solver {
         let engines = &mut self.engines;
         engines.none_used();
         options.paths.validate()?;
-        match options.emissions {
-            Emissions::Unknown => {}
-            Emissions::Known => return ranges::solve(engines, &ranges::IN_SPACE, measured, options, monitor),
-            Emissions::Constant => return Err(MinimalError::OneConstant),
+        let of_ranges: Option<&[_]> = match options.emissions {
+            Emissions::Unknown => None,
+            Emissions::Known => Some(&ranges::IN_SPACE),
+            Emissions::Constant => Some(&ranges::IN_SPACE_WITH_CONSTANT),
+        };
+        if let Some(methods) = of_ranges {
+            return ranges::solve(engines, methods, measured, options, monitor);
         }
         check::<3>(measured)?;
         let fits = |method: &&Method| {
