@@ -73,6 +73,12 @@ const FAMILIES: &[Known] = &[
         "crates/tdoa/src/generated/three_four_constant.rs",
     ),
     known(
+        "4r7s_constant",
+        "crates/tdoa/families/4r7s_constant.toml",
+        "crates/tdoa/families/4r7s_constant.start.json",
+        "crates/tdoa/src/generated/four_seven_constant.rs",
+    ),
+    known(
         "five_point",
         "examples/families/five_point.toml",
         "examples/families/five_point.start.json",

@@ -96,7 +96,7 @@ def test_exact_networks(m, n, run_json, tmp_path):
             assert bits(float(found.conditions[k])) == bits(each["condition"])
 
 
-@pytest.mark.parametrize("d, m, n", [(2, 3, 4), (2, 4, 3), (3, 5, 5)])
+@pytest.mark.parametrize("d, m, n", [(2, 3, 4), (2, 4, 3), (3, 5, 5), (3, 4, 7), (3, 7, 4)])
 def test_exact_networks_of_ranges_with_a_constant(d, m, n, run_json, tmp_path):
     ranges = tdoa.simulate(m, n, dimensions=d, layout="normal", ranges=True, seed=m + n).pseudoranges + 2.5
     expected = run_json("tdoa", "solve", written(tmp_path, ranges), "--emissions", "constant", "--dimensions", d)

@@ -21,8 +21,8 @@ use crate::{Failure, input, interrupt, output};
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
 /// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 10r/4s, 7r/5s, 6r/6s and all larger
 /// sizes. Of ranges (--ranges) 3r/3s and all larger sizes, in space 6r/4s, 5r/5s, 4r/6s and all larger sizes; of ranges
-/// with one unknown constant (--emissions constant) 4r/3s, 3r/4s and all larger sizes, in space 5r/5s and all
-/// larger sizes.
+/// with one unknown constant (--emissions constant) 4r/3s, 3r/4s and all larger sizes, in space 7r/4s, 5r/5s, 4r/7s
+/// and all larger sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing. - for standard

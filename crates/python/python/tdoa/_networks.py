@@ -355,7 +355,7 @@ def solve(
 ):
     """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 10r/4s, 7r/5s, 6r/6s and up.
 
-    Of ranges, 3r/3s and up, in space 6r/4s, 5r/5s, 4r/6s and up. Of ranges with one unknown constant, 4r/3s, 3r/4s and up, in space 5r/5s and up.
+    Of ranges, 3r/3s and up, in space 6r/4s, 5r/5s, 4r/6s and up. Of ranges with one unknown constant, 4r/3s, 3r/4s and up, in space 7r/4s, 5r/5s, 4r/7s and up.
 
     Parameters
     ----------

@@ -9,6 +9,8 @@ pub(crate) mod five_six;
 #[rustfmt::skip]
 pub(crate) mod four_five;
 #[rustfmt::skip]
+pub(crate) mod four_seven_constant;
+#[rustfmt::skip]
 pub(crate) mod four_six_ranges;
 #[rustfmt::skip]
 pub(crate) mod six_three;

@@ -73,12 +73,6 @@ pub enum MinimalError {
         /// Name of the transmitter.
         transmitter: String,
     },
-    /// Ranges in space with a constant that is not known, of fewer nodes than are solved.
-    #[error(
-        "ranges in space with one unknown constant are solved exactly from 5 receivers and 5 transmitters up: use `calibrate`, or leave the emissions unknown, so that every \
-         transmitter has an offset"
-    )]
-    OneConstant,
     /// A range that is none.
     #[error(
         "the range of receiver {receiver} and transmitter {transmitter} is negative ({value} m): distances are positive; \

@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 /// Unknowns or offsets: few enough to need no allocation.
 pub(crate) type Point = SmallVec<[Complex64; 8]>;
 /// Parameters likewise.
-pub(crate) type Parameters = SmallVec<[Complex64; 24]>;
+pub(crate) type Parameters = SmallVec<[Complex64; 28]>;
 
 /// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major,
 /// in any unit of length; of ranges, their squares in any unit of these, or if all have one constant in common, the ranges.

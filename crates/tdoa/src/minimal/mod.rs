@@ -39,6 +39,8 @@
 //! | 3r/4s in the plane, and more of both | Gram matrix of the receivers, and the constant | 43 |
 //! | 4r/3s in the plane, and more receivers | the same with roles exchanged | 43 |
 //! | 5r/5s in space, and more of both | four constants, by a determinant, and 5r/5s for each that is real | 42 each |
+//! | 4r/7s in space, and more transmitters | Gram matrix of the receivers, and the constant | 388 |
+//! | 7r/4s in space, and more receivers | the same with roles exchanged | 388 |
 //!
 //! A solver in the plane that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).

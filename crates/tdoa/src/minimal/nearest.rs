@@ -196,7 +196,7 @@ mod tests {
     use crate::minimal::formulation::Formulation;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
-    use crate::minimal::ranges::{FiveFive, FourSix, Gram, GramAndConstant, ThreeFour, ThreeThree};
+    use crate::minimal::ranges::{FiveFive, FourSeven, FourSix, Gram, GramAndConstant, ThreeFour, ThreeThree};
     use crate::pseudoranges::Pseudoranges;
     use hc::Fibre;
     use hc::poly::{Evaluate, Isa};
@@ -245,6 +245,7 @@ mod tests {
         turned_fibres_are_fibres::<Gram<FourSix, 3>>();
         turned_fibres_are_fibres::<Gram<FiveFive, 3>>();
         turned_fibres_are_fibres::<GramAndConstant<ThreeFour, 2>>();
+        turned_fibres_are_fibres::<GramAndConstant<FourSeven, 3>>();
     }
 
     /// Data that are the stored measurements in another order, with other clocks, come back in the stored one.

@@ -35,7 +35,7 @@ mod tests {
     use crate::minimal::formulation::Formulation;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
-    use crate::minimal::ranges::{FiveFive, FourSix, Gram, GramAndConstant, ThreeFour, ThreeThree};
+    use crate::minimal::ranges::{FiveFive, FourSeven, FourSix, Gram, GramAndConstant, ThreeFour, ThreeThree};
     use crate::minimal::spatial::{Dual, EightFive, SevenFive, SixSix, TenFour};
     use hc::poly::{Evaluate, Isa};
     use num_complex::Complex64;
@@ -76,6 +76,7 @@ mod tests {
         solutions_stay_solutions::<Gram<FourSix, 3>>(1e-9);
         solutions_stay_solutions::<Gram<FiveFive, 3>>(1e-9);
         solutions_stay_solutions::<GramAndConstant<ThreeFour, 2>>(1e-9);
+        solutions_stay_solutions::<GramAndConstant<FourSeven, 3>>(1e-9);
     }
 
     /// The unknowns of 6r/6s reach 6e4, next to others of size one, and lose a digit more than the others.

@@ -43,8 +43,8 @@ const LINEAR: Shapes = Shapes { sizes: &[(9, 5), (10, 5)], for_a_call: 32, calls
 const BY_PATHS: Shapes = Shapes { sizes: &[(8, 5), (7, 5), (6, 6), (10, 4)], for_a_call: 1, calls: 1 };
 /// Ranges with a constant in the plane: a subset takes a millisecond.
 const CONSTANT_IN_PLANE: Shapes = Shapes { sizes: &[(4, 3), (3, 4)], for_a_call: 1, calls: usize::MAX };
-/// Ranges with a constant in space: a subset takes some hundredths of a second.
-const CONSTANT_IN_SPACE: Shapes = Shapes { sizes: &[(5, 5)], for_a_call: 1, calls: usize::MAX };
+/// Ranges with a constant in space: a subset takes some hundredths of a second, or where it has four nodes of a kind a tenth.
+const CONSTANT_IN_SPACE: Shapes = Shapes { sizes: &[(5, 5), (4, 7), (7, 4)], for_a_call: 1, calls: usize::MAX };
 /// Ranges in the plane: a subset takes a tenth of a millisecond.
 const RANGES_IN_PLANE: Shapes = Shapes { sizes: &[(3, 3)], for_a_call: 4, calls: usize::MAX };
 /// Ranges in space: a subset takes some milliseconds.
@@ -87,7 +87,7 @@ const COARSE: f64 = 1e-3;
 /// measured subset: 6r/3s, 5r/4s or 4r/5s in the plane. In space a call proposes the networks of
 /// several subsets of 9r/5s or 10r/5s; of fewer nodes, where few measurements are spare, all networks of
 /// one subset of 8r/5s, 7r/5s, 6r/6s or 10r/4s ([`crate::minimal::spatial`]). Subsets of ranges are 3r/3s in the plane,
-/// with a constant 4r/3s or 3r/4s, and 5r/5s, 4r/6s or 6r/4s in space, with a constant 5r/5s.
+/// with a constant 4r/3s or 3r/4s, and 5r/5s, 4r/6s or 6r/4s in space, with a constant 5r/5s, 4r/7s or 7r/4s.
 pub struct MinimalHypotheses {
     options: MinimalOptions,
     in_plane_solvers: Mutex<Vec<Solver>>,
@@ -328,6 +328,7 @@ mod tests {
         the_truth_is_listed_of_ranges::<2>(Emissions::Constant, 3, 4);
         the_truth_is_listed_of_ranges::<2>(Emissions::Constant, 4, 3);
         the_truth_is_listed_of_ranges::<3>(Emissions::Constant, 5, 5);
+        the_truth_is_listed_of_ranges::<3>(Emissions::Constant, 4, 7);
     }
 
     /// Where no measurement is spare in space, random networks alone miss the truth, of the first of these

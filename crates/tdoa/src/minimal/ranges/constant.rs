@@ -1,11 +1,11 @@
 //! The Gram matrix of D + 1 receivers and the constant that all ranges have in common: three receivers with four
-//! transmitters in the plane.
+//! transmitters in the plane, four with seven in space.
 //!
-//! The equations are in `families/3r4s_constant.toml`. Parameters are the ranges, as they were measured.
+//! The equations are in `families/3r4s_constant.toml` and `4r7s_constant.toml`. Parameters are the ranges, as they were measured.
 
-use super::gram::{IN_PLANE, Size, define_size, distances, inverse, placed, reordered};
+use super::gram::{IN_PLANE, IN_SPACE, Size, define_size, distances, inverse, placed, reordered};
 use crate::clocks::Emissions;
-use crate::generated::three_four_constant;
+use crate::generated::{four_seven_constant, three_four_constant};
 use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::Normalised;
@@ -27,6 +27,18 @@ define_size!(
     4,
     [2, 2, 0, 1],
     IN_PLANE
+);
+define_size!(
+    "Four receivers, seven transmitters in space: 388 paths.",
+    FourSeven,
+    3,
+    four_seven_constant,
+    "4r7s_constant",
+    "4r/7s",
+    4,
+    7,
+    [2, 2, 2, 0, 0, 0, 1],
+    IN_SPACE
 );
 
 /// The formulation of a size in D dimensions. Unknowns are those of [`super::gram::Gram`], and then the constant `c`.

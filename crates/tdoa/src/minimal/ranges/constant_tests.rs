@@ -35,11 +35,13 @@ fn five_receivers_and_transmitters_in_space() {
     assert!(constants[2] > 0 && constants[4] > 0, "{constants:?}");
 }
 
-/// 43 is the number of standard monomials of a Groebner basis of other equations: see the family.
+/// 43 and 388 are the numbers of standard monomials of Groebner bases of other equations: see the families.
 #[test]
 fn networks_of_the_smallest_sizes() {
     all_are_found::<2>(Constant, Solver::new(), (3, 4), 43, 200);
     all_are_found::<2>(Constant, Solver::new(), (4, 3), 43, 200);
+    all_are_found::<3>(Constant, spatial::Solver::new(), (4, 7), 388, 12);
+    all_are_found::<3>(Constant, spatial::Solver::new(), (7, 4), 388, 12);
 }
 
 #[test]
@@ -115,7 +117,7 @@ fn nodes_in_special_position_are_refused() {
 fn nodes_in_space_in_special_position() {
     let floor = |p: &mut [f64; 3]| p[2] = 0.5 * p[0] - p[1] + 1.0;
     let refused = |measured: &Pseudoranges| spatial::solve(measured, &options_of(Constant)).unwrap_err();
-    for (m, n) in [(5, 5), (6, 7)] {
+    for (m, n) in [(5, 5), (6, 7), (4, 7), (7, 4)] {
         assert_eq!(refused(&moved::<3>(m, n, |w| w.receivers.iter_mut().for_each(floor))), MinimalError::InOnePlane);
         assert_eq!(refused(&moved::<3>(m, n, |w| w.transmitters.iter_mut().for_each(floor))), MinimalError::InOnePlane);
         let twice = moved::<3>(m, n, |w| w.receivers[2] = w.receivers[0]);

@@ -13,7 +13,7 @@ mod pencil;
 mod solve;
 
 #[cfg(test)]
-pub(super) use constant::{GramAndConstant, ThreeFour};
+pub(super) use constant::{FourSeven, GramAndConstant, ThreeFour};
 #[cfg(test)]
 pub(super) use gram::{FiveFive, FourSix, Gram, ThreeThree};
 pub(super) use solve::{IN_PLANE, IN_PLANE_WITH_CONSTANT, IN_SPACE, IN_SPACE_WITH_CONSTANT, solve};

@@ -1,7 +1,7 @@
 //! The entry point for ranges of all sizes, with a constant or without.
 
 use super::centred::{span, spread};
-use super::constant::{GramAndConstant, ThreeFour};
+use super::constant::{FourSeven, GramAndConstant, ThreeFour};
 use super::five_five;
 use super::gram::{FiveFive, FourSix, Gram, ThreeThree};
 use crate::loss::Loss;
@@ -70,14 +70,18 @@ where
 }
 
 /// Methods in space for ranges with one unknown constant; the one with the fewest paths comes first.
-pub(in crate::minimal) const IN_SPACE_WITH_CONSTANT: [Method<3>; 1] = [Method {
-    name: "5r/5s",
-    receivers: 5,
-    transmitters: 5,
-    exchanges: false,
-    spread: spread::<3>,
-    solve: five_five::solve,
-}];
+pub(in crate::minimal) const IN_SPACE_WITH_CONSTANT: [Method<3>; 3] = [
+    Method {
+        name: "5r/5s",
+        receivers: 5,
+        transmitters: 5,
+        exchanges: false,
+        spread: spread::<3>,
+        solve: five_five::solve,
+    },
+    by_paths::<GramAndConstant<FourSeven, 3>, 3>(span::<3>),
+    exchanging("7r/4s", by_paths::<GramAndConstant<FourSeven, 3>, 3>(span::<3>)),
+];
 
 /// A method with the roles of receivers and transmitters exchanged.
 const fn exchanging<const D: usize>(name: &'static str, method: Method<D>) -> Method<D> {
@@ -112,9 +116,6 @@ pub(in crate::minimal) fn solve<const D: usize>(
         if best.is_some() {
             break;
         }
-    }
-    if methods.iter().all(|method| m < method.receivers || n < method.transmitters) {
-        return Err(MinimalError::OneConstant);
     }
     let Some((_, method, part)) = best else {
         return Err(match (span::<D>(measured) > 0.0, D) {

@@ -52,7 +52,8 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 /// extended in the same way. The equations are those of the paper, one dimension more.
 ///
 /// Ranges ([`MinimalOptions::emissions`]) are solved through 5r/5s, 4r/6s or 6r/4s, with 42 or 38 paths; those with one
-/// unknown constant through 5r/5s, with 42 paths for each real one of the four constants that a determinant leaves.
+/// unknown constant through 5r/5s, with 42 paths for each real one of the four constants that a determinant leaves,
+/// or through 4r/7s or 7r/4s, with 388.
 ///
 /// Measurements with more errors than `tolerance` allows make a warning: the network is then not to be
 /// relied upon, and need not be that of least squares.
