@@ -1,6 +1,7 @@
 //! `tdoa.calibrate`, in the plane and in space.
 
 use crate::arrays::array;
+use crate::clocks;
 use crate::errors::{Failure, guarded};
 use crate::json::{self, FORMAT};
 use crate::measured::Table;
@@ -12,8 +13,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Emissions, Errors, KnownDistance, MeasuredPosition, Node,
-    ReceiverDelays, Unfinished, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, Node, ReceiverDelays,
+    Unfinished, calibrate_with,
 };
 
 /// CalibrateSettings as Python gives them.
@@ -29,7 +30,10 @@ pub(crate) struct CalibrateSettings {
     positions: Vec<(usize, Vec<Option<f64>>, f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
-    ranges: bool,
+    emissions: String,
+    receiver_clocks: String,
+    /// Of each receiver, by name.
+    recorders: Option<Vec<String>>,
     errors: String,
     estimate_speed: bool,
     seed: u64,
@@ -59,12 +63,12 @@ impl CalibrateSettings {
         options.receiver_delays = match self.receiver_delays.as_str() {
             "none" => ReceiverDelays::None,
             "auto" => ReceiverDelays::Auto,
-            "all" => ReceiverDelays::All,
             other => {
                 return Err(Failure::Input(format!("receiver_delays must be none, auto or all, not {other:?}")));
             }
         };
-        options.clocks.emissions = Emissions::of_ranges(self.ranges);
+        options.clocks.emissions = clocks::emissions(&self.emissions)?;
+        options.clocks.receivers = clocks::receivers(&self.receiver_clocks)?;
         options.errors = match self.errors.as_str() {
             "auto" => Errors::Auto,
             "symmetric" => Errors::Symmetric,
@@ -114,7 +118,10 @@ pub(crate) fn calibrate<'py>(
     how: WorkOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
-        let measured = table.measured()?;
+        let mut measured = table.measured()?;
+        if let Some(recorders) = &settings.recorders {
+            measured = measured.with_recorders(recorders.clone()).map_err(Failure::input)?;
+        }
         let done = match settings.dimensions {
             Some(2) => {
                 let options = settings.options()?;
@@ -166,7 +173,7 @@ fn partial<const D: usize>(py: Python<'_>, error: CalibrateError<D>) -> Result<B
             let best = best.map(|best| unfinished(py, &best)).transpose()?;
             Ok(best.into_bound_py_any(py)?)
         }
-        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
+        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Clocks { .. } => {
             Err(Failure::undetermined(error))
         }
         error => Err(Failure::input(error)),

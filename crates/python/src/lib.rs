@@ -7,6 +7,7 @@
 mod arrays;
 mod calibration;
 mod certify;
+mod clocks;
 mod decompose;
 mod errors;
 mod family;

@@ -1,6 +1,7 @@
 //! `tdoa.solve`, `tdoa.simulate` and `tdoa.cramer_rao`.
 
 use crate::arrays::{array, elements};
+use crate::clocks::emissions;
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
 use crate::work::{Done, WorkOptions, run, whole};
@@ -191,7 +192,10 @@ pub(crate) struct Wanted {
     detour_size: f64,
     fault: Option<(String, f64)>,
     delays: f64,
-    ranges: bool,
+    rates: f64,
+    channels: usize,
+    duration: Option<f64>,
+    emissions: String,
     seed: u64,
 }
 
@@ -232,7 +236,8 @@ fn made<'py, const D: usize>(py: Python<'py>, wanted: &Wanted) -> Result<Bound<'
     (options.noise, options.missing, options.hearing) = (wanted.noise, wanted.missing, wanted.hearing);
     (options.outliers, options.outlier_size) = (wanted.outliers, wanted.outlier_size);
     (options.detours, options.detour_size, options.delays) = (wanted.detours, wanted.detour_size, wanted.delays);
-    options.emissions = Emissions::of_ranges(wanted.ranges);
+    (options.rates, options.channels, options.duration) = (wanted.rates, wanted.channels, wanted.duration);
+    options.emissions = emissions(&wanted.emissions)?;
     let made = py.detach(|| tdoa::simulate(&options)).map_err(Failure::input)?;
     let (m, n) = (options.receivers, options.transmitters);
     let result = PyDict::new(py);
@@ -242,6 +247,7 @@ fn made<'py, const D: usize>(py: Python<'py>, wanted: &Wanted) -> Result<Bound<'
     result.set_item("transmitters", array(py, flat(&made.network.transmitters), &[n, D])?)?;
     result.set_item("offsets", array(py, made.network.offsets, &[n])?)?;
     result.set_item("outliers", array(py, made.outliers, &[m, n])?)?;
+    result.set_item("clocks", array(py, made.clocks.into_iter().flatten().collect(), &[m, 2])?)?;
     Ok(result)
 }
 

@@ -119,6 +119,13 @@ def test_memory_layouts_give_the_same_bits():
         (dict(receiver_delays="some"), "none, auto or all"),
         (dict(errors="late"), "symmetric or one-sided"),
         (dict(errors="one-sided", receiver_delays="auto"), "not both"),
+        (dict(clocks="offset"), r"tdoa.Clocks\(emissions"),
+        (dict(clocks=tdoa.Clocks(emissions="constant"), ranges=True), "leave one of both out"),
+        (dict(clocks=tdoa.Clocks(receivers="rate"), receiver_delays="all"), "give one of both"),
+        (dict(clocks=tdoa.Clocks(receivers="rate"), errors="one-sided"), "not both"),
+        (dict(recorders=["a"] * 8), "recorders have clocks of their own"),
+        (dict(recorders=["a"], clocks=tdoa.Clocks(receivers="offset")), "1 names for 8 receivers"),
+        (dict(recorders={"q": "a"}, clocks=tdoa.Clocks(receivers="offset")), "no receiver is named q"),
         (dict(distances=[(1, 2)]), "triples"),
         (dict(distances=[("r1", "q", 1.0)]), "no receiver is named q"),
         (dict(estimate_speed=True), "known positions and distances"),
@@ -128,6 +135,14 @@ def test_memory_layouts_give_the_same_bits():
 def test_arguments(arguments, words):
     with pytest.raises(hc.InputError, match=words):
         tdoa.calibrate(TABLE, **arguments)
+
+
+def test_clocks_that_there_are_not():
+    for given in (dict(receivers="drift"), dict(emissions=None)):
+        with pytest.raises(hc.InputError, match="of Clocks must be"):
+            tdoa.Clocks(**given)
+    with pytest.raises(hc.InputError, match="leave one of both out"):
+        tdoa.simulate(ranges=True, emissions="constant")
 
 
 @pytest.mark.parametrize("dimensions", [4, "three", True, None])

@@ -509,3 +509,41 @@ def test_ranges_have_no_offsets():
     assert not found.offsets.any() and found.data["emissions"] == "known"
     with pytest.raises(tdoa.InputError, match="below zero"):
         tdoa.calibrate(tdoa.simulate(noise=0.01).pseudoranges, ranges=True)
+
+
+def test_recorders_with_clocks_of_their_own(programs, tmp_path):
+    import json
+    import subprocess
+
+    made = tdoa.simulate(8, 30, noise=0.01, delays=50, rates=2e-5, channels=2, duration=2e5, seed=1)
+    recorders = [f"rec{i // 2 + 1}" for i in range(8)]
+    found = tdoa.calibrate(made.pseudoranges, clocks=tdoa.Clocks(receivers="rate"), recorders=recorders)
+    assert [clock.recorder for clock in found.clocks] == ["rec1", "rec2", "rec3", "rec4"]
+    first = found.clocks[0]
+    assert (first.offset, first.rate) == (0, 0)
+    for k, clock in enumerate(found.clocks[1:], 1):
+        rate = (1 + made.clocks[2 * k, 1]) / (1 + made.clocks[0, 1]) - 1
+        assert abs(clock.rate - rate) < 5 * clock.rate_std and clock.offset_std < 0.1
+    found.save_html(tmp_path / "report.html")
+    assert "clocks: each transmitter has an unknown offset" in repr(found) and "<h2>Clocks</h2>" in (tmp_path / "report.html").read_text()
+    assert tdoa.Calibration.from_json(found.to_json()).clocks == found.clocks
+
+    # Those of a dict, and those that the program has of a file.
+    named = {f"r{i + 1}": name for i, name in enumerate(recorders)}
+    assert tdoa.calibrate(made.pseudoranges, clocks=tdoa.Clocks(receivers="rate"), recorders=named) == found
+    table, groups = tmp_path / "table.csv", tmp_path / "recorders.csv"
+    table.write_text("\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n")
+    groups.write_text("".join(f"{receiver},{recorder}\n" for receiver, recorder in named.items()))
+    command = [programs["tdoa"], "calibrate", table, "--receiver-clocks", "rate", "--recorders", groups, "--json", "-"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert json.loads(printed)["clocks"] == found.data["clocks"]
+
+    # A clock of each receiver; receivers that share one have none.
+    apart = tdoa.simulate(8, 20, noise=0.01, delays=3, seed=2).pseudoranges
+    each = tdoa.calibrate(apart, receiver_delays="all", dimensions=2)
+    assert each == tdoa.calibrate(apart, clocks=tdoa.Clocks(receivers="offset"), dimensions=2)
+    assert len(each.clocks) == 8 and each.clocks[1].rate is None
+    constant = tdoa.simulate(6, 12, noise=0.01, emissions="constant", seed=4)
+    assert np.ptp(constant.offsets) == 0 and not constant.clocks.any()
+    found = tdoa.calibrate(constant.pseudoranges, clocks=tdoa.Clocks(emissions="constant"))
+    assert found.clocks == [] and found.data["emissions"] == "constant" and np.ptp(found.offsets) == 0

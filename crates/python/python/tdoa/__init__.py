@@ -15,17 +15,20 @@ Arrays in, arrays out, lengths in metres, NaN for what is missing. Exceptions ar
 from hc import Error, InputError, InternalError, UndeterminedError, __version__
 
 from ._calibration import Alternative, Calibration
+from ._clocks import Clocks, RecorderClock
 from ._networks import Networks, Simulation, Unfinished, calibrate, cramer_rao, simulate, solve
 from ._tables import Pseudoranges, read
 
 __all__ = [
     "Alternative",
     "Calibration",
+    "Clocks",
     "Error",
     "InputError",
     "InternalError",
     "Networks",
     "Pseudoranges",
+    "RecorderClock",
     "Simulation",
     "UndeterminedError",
     "Unfinished",

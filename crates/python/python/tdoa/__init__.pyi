@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -11,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "Alternative",
     "Calibration",
+    "Clocks",
     "Error",
     "InputError",
     "InternalError",
     "Networks",
     "Pseudoranges",
+    "RecorderClock",
     "Simulation",
     "UndeterminedError",
     "Unfinished",
@@ -81,6 +84,20 @@ class Unfinished:
     def __eq__(self, other: object) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
+@dataclass(frozen=True, kw_only=True)
+class Clocks:
+    emissions: Literal["unknown", "constant", "known"] = "unknown"
+    receivers: Literal["common", "offset", "rate"] = "common"
+    def __post_init__(self) -> None: ...
+
+class RecorderClock(NamedTuple):
+    recorder: str
+    offset: float
+    offset_std: float | None
+    rate: float | None
+    rate_std: float | None
+    at: float | None
+
 class Alternative:
     receivers: _Floats
     transmitters: _Floats
@@ -127,6 +144,8 @@ class Calibration:
     def residuals(self) -> _Floats: ...
     @property
     def alternatives(self) -> list[Alternative]: ...
+    @property
+    def clocks(self) -> list[RecorderClock]: ...
     @property
     def trusted(self) -> bool: ...
     @property
@@ -177,6 +196,7 @@ class Simulation(NamedTuple):
     transmitters: _Floats
     offsets: _Floats
     outliers: NDArray[np.bool_]
+    clocks: _Floats
 
 def calibrate(
     pseudoranges: _Table,
@@ -192,6 +212,8 @@ def calibrate(
     progress: _Progress = True,
     receiver_delays: Literal["none", "auto", "all"] = "none",
     ranges: bool = False,
+    clocks: Clocks | None = None,
+    recorders: Iterable[str] | Mapping[str, str] | None = None,
     errors: Literal["auto", "symmetric", "one-sided"] = "auto",
     distances: Iterable[tuple[str | int, str | int, float]] | None = None,
     estimate_speed: bool = False,
@@ -229,7 +251,11 @@ def simulate(
     detour_size: float = 1.0,
     fault: tuple[Literal["delay", "drift", "move"], float] | None = None,
     delays: float = 0.0,
+    rates: float = 0.0,
+    channels: int = 1,
+    duration: float | None = None,
     ranges: bool = False,
+    emissions: Literal["unknown", "constant", "known"] = "unknown",
     seed: int = 0,
 ) -> Simulation: ...
 def cramer_rao(

@@ -8,6 +8,7 @@ import numpy as np
 
 from hc import InputError, _native
 
+from ._clocks import RecorderClock
 from ._tables import real_matrix
 
 
@@ -70,6 +71,9 @@ class Calibration:
         shows an error of its own.
     alternatives : list of Alternative
         Other networks that do, best first.
+    clocks : list of RecorderClock
+        The clocks of the recorders, where these have clocks of their own: offsets in metres, rates as shares, with standard
+        deviations, against the first recorder; empty where receivers share a clock.
     mirror_images : list of dict
         In space, places of single nodes on the other side of a plane that explain the measurements as well: `node`, `kind`
         ("receiver" or "transmitter"), `position`, `distance_from_plane`, `log_likelihood_loss`.
@@ -169,6 +173,11 @@ class Calibration:
     @cached_property
     def alternatives(self):
         return [Alternative(each, self.dimensions) for each in self.data["alternatives"]]
+
+    @cached_property
+    def clocks(self):
+        names = RecorderClock._fields
+        return [RecorderClock(*(clock.get(name) for name in names)) for clock in self.data.get("clocks", [])]
 
     @property
     def trusted(self):

@@ -10,6 +10,7 @@ from hc._result import Result
 from hc._run import call, integer, number, seeded, text
 
 from ._calibration import Calibration
+from ._clocks import Clocks, settings as clock_settings
 from ._tables import real_matrix, table
 
 
@@ -137,6 +138,8 @@ def calibrate(
     progress=True,
     receiver_delays="none",
     ranges=False,
+    clocks=None,
+    recorders=None,
     errors="auto",
     distances=None,
     estimate_speed=False,
@@ -175,11 +178,16 @@ def calibrate(
     progress : bool or callable
         Whether a bar is shown after a second, in a terminal or a notebook with tqdm; or a function of words, done, total.
     receiver_delays : {"none", "auto", "all"}
-        What is done about receivers whose measurements are all too long or too short: told, estimated for those that show it, or
-        estimated for all.
+        What is done about receivers whose measurements are all too long or too short: told, or estimated for those that show it.
+        "all" is short for ``clocks=Clocks(receivers="offset")`` with a recorder for each receiver.
     ranges : bool
         Whether the measurements are distances, such as two-way ranges or arrival times less known send times: transmitters have no
-        offsets then. Not together with `receiver_delays` "all".
+        offsets then. Short for ``clocks=Clocks(emissions="known")``.
+    clocks : Clocks, optional
+        What is unknown of the clocks of transmitters and recorders; by default the offset of each transmitter.
+    recorders : sequence of str, or dict of receiver to recorder, optional
+        The recorder of each receiver: those of one share a clock. By default receivers with names such as "rec1:1" and "rec1:2" are
+        channels of one, and every other receiver is a recorder by itself; so are those that a dict leaves out.
     errors : {"auto", "symmetric", "one-sided"}
         How measurements are wrong that are wrong by more than noise: too long or too short alike, or nearly all too long, as where
         sound or radio comes by a detour, which does not go together with `receiver_delays`. With "auto" the latter is tried where no
@@ -221,6 +229,15 @@ def calibrate(
     >>> found = tdoa.calibrate(made.pseudoranges)
     >>> found.dimensions, found.receivers.shape, found.covariance.shape
     (3, (10, 3), (10, 3, 3))
+
+    Recorders of two channels that were started by themselves, with clocks that are apart by a hundred metres:
+
+    >>> made = tdoa.simulate(10, 30, noise=0.01, delays=100, channels=2, seed=1)
+    >>> recorders = [f"rec{i // 2 + 1}" for i in range(10)]
+    >>> found = tdoa.calibrate(made.pseudoranges, clocks=tdoa.Clocks(receivers="offset"), recorders=recorders)
+    >>> apart = made.clocks[2, 0] - made.clocks[0, 0]
+    >>> [clock.recorder for clock in found.clocks], bool(abs(found.clocks[1].offset - apart) < 0.1)
+    (['rec1', 'rec2', 'rec3', 'rec4', 'rec5'], True)
     """
     given, single, factor = table(pseudoranges, names, sigma, speed)
     receivers, count = given["receivers"], len(given["values"])
@@ -234,8 +251,7 @@ def calibrate(
         "anchors": exact,
         "positions": measured,
         "distances": _distances(distances, receivers, count),
-        "receiver_delays": text("receiver_delays", receiver_delays),
-        "ranges": bool(ranges),
+        **clock_settings(clocks, bool(ranges), text("receiver_delays", receiver_delays), recorders, nodes[:count]),
         "errors": text("errors", errors),
         "estimate_speed": bool(estimate_speed),
         "seed": seeded(seed),
@@ -427,6 +443,8 @@ class Simulation(NamedTuple):
         True offsets.
     outliers : ndarray of bool, shape (m, n)
         Which measurements are outliers.
+    clocks : ndarray of float, shape (m, 2)
+        The clock of each receiver's recorder: its offset in metres, and its rate as a share.
     """
 
     pseudoranges: np.ndarray
@@ -434,6 +452,7 @@ class Simulation(NamedTuple):
     transmitters: np.ndarray
     offsets: np.ndarray
     outliers: np.ndarray
+    clocks: np.ndarray
 
 
 def simulate(
@@ -452,7 +471,11 @@ def simulate(
     detour_size=1.0,
     fault=None,
     delays=0.0,
+    rates=0.0,
+    channels=1,
+    duration=None,
     ranges=False,
+    emissions="unknown",
     seed=0,
 ):
     """A random network in the plane or in space and its measurements, the same for the same arguments on any machine.
@@ -479,10 +502,17 @@ def simulate(
         Share of the measurements that come by a detour, and its mean length, metres.
     fault : (str, float), optional
         An error of the first receiver: ("delay" or "drift" or "move", metres).
-    delays : float
-        Standard deviation of a constant error of each receiver, metres.
+    delays, rates : float
+        Standard deviations of the offsets of the recorders' clocks, metres, and of their rates, as a share: 1e-6 is one part in a
+        million.
+    channels : int
+        Receivers that share a recorder: the first ones, the next ones, and so on.
+    duration : float, optional
+        Transmitters send at times that are uniform over this, metres: seconds times the speed. By default as the layout says.
     ranges : bool
-        Whether distances are made: offsets are zero.
+        Whether distances are made: offsets are zero. Short for ``emissions="known"``.
+    emissions : {"unknown", "constant", "known"}
+        Whether transmitters have offsets of their own, one that they share, or none.
     seed : int
         Seed of the random numbers.
 
@@ -519,10 +549,16 @@ def simulate(
         "detour_size": number("detour_size", detour_size),
         "fault": kind,
         "delays": number("delays", delays),
-        "ranges": bool(ranges),
+        "rates": number("rates", rates),
+        "channels": integer("channels", channels),
+        "duration": number("duration", duration),
+        "emissions": Clocks(emissions="known" if ranges and emissions == "unknown" else emissions).emissions,
         "seed": seeded(seed),
     }
-    missing_ones = [name for name, value in wanted.items() if value is None and name not in ("size", "hearing", "fault")]
+    if ranges and wanted["emissions"] != "known":
+        raise InputError(f'ranges=True is short for emissions="known", and emissions is {emissions!r}: leave one of both out')
+    optional = ("size", "hearing", "fault", "duration")
+    missing_ones = [name for name, value in wanted.items() if value is None and name not in optional]
     if missing_ones:
         raise InputError(f"{missing_ones[0]} must be a number, not None")
     return Simulation(**_native.simulate(wanted))
