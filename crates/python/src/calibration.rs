@@ -32,6 +32,8 @@ pub(crate) struct CalibrateSettings {
     receiver_delays: String,
     emissions: String,
     receiver_clocks: String,
+    offset_sigma: Option<f64>,
+    rate_sigma: Option<f64>,
     /// Of each receiver, by name.
     recorders: Option<Vec<String>>,
     errors: String,
@@ -69,6 +71,7 @@ impl CalibrateSettings {
         };
         options.clocks.emissions = clocks::emissions(&self.emissions)?;
         options.clocks.receivers = clocks::receivers(&self.receiver_clocks)?;
+        (options.clocks.offset_sigma, options.clocks.rate_sigma) = (self.offset_sigma, self.rate_sigma);
         options.errors = match self.errors.as_str() {
             "auto" => Errors::Auto,
             "symmetric" => Errors::Symmetric,

@@ -123,6 +123,8 @@ def test_memory_layouts_give_the_same_bits():
         (dict(clocks=tdoa.Clocks(emissions="constant"), ranges=True), "leave one of both out"),
         (dict(clocks=tdoa.Clocks(receivers="rate"), receiver_delays="all"), "give one of both"),
         (dict(clocks=tdoa.Clocks(receivers="rate"), errors="one-sided"), "not both"),
+        (dict(clocks=tdoa.Clocks(rate_sigma=1e-5)), "clocks.rate_sigma"),
+        (dict(clocks=tdoa.Clocks(receivers="offset", offset_sigma=-1)), "clocks.offset_sigma must be positive"),
         (dict(recorders=["a"] * 8), "recorders have clocks of their own"),
         (dict(recorders=["a"], clocks=tdoa.Clocks(receivers="offset")), "1 names for 8 receivers"),
         (dict(recorders={"q": "a"}, clocks=tdoa.Clocks(receivers="offset")), "no receiver is named q"),

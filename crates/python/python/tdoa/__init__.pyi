@@ -88,6 +88,8 @@ class Unfinished:
 class Clocks:
     emissions: Literal["unknown", "constant", "known"] = "unknown"
     receivers: Literal["common", "offset", "rate"] = "common"
+    offset_sigma: float | None = None
+    rate_sigma: float | None = None
     def __post_init__(self) -> None: ...
 
 class RecorderClock(NamedTuple):

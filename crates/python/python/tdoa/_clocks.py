@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from hc import InputError
+from hc._run import number
 
 _CHOICES = {"emissions": ("unknown", "constant", "known"), "receivers": ("common", "offset", "rate")}
 
@@ -21,16 +22,23 @@ class Clocks:
     receivers : {"common", "offset", "rate"}
         What the clocks of receivers do: all share one; each recorder was started by itself, with an unknown offset a_d; or its
         clock has an unknown rate b_d too, and measurements are readings of that clock.
+    offset_sigma, rate_sigma : float, optional
+        Standard deviations of the offsets about their mean, metres, and of the rates about theirs, as a share (20e-6 for common
+        quartz crystals), where something is known of them.
     """
 
     emissions: str = "unknown"
     receivers: str = "common"
+    offset_sigma: float | None = None
+    rate_sigma: float | None = None
 
     def __post_init__(self):
         for name, choices in _CHOICES.items():
             given = getattr(self, name)
             if given not in choices:
                 raise InputError(f"{name} of Clocks must be {', '.join(choices[:-1])} or {choices[-1]}, not {given!r}")
+        for name in ("offset_sigma", "rate_sigma"):
+            number(f"{name} of Clocks", getattr(self, name))
 
 
 class RecorderClock(NamedTuple):
@@ -77,6 +85,8 @@ def settings(clocks, ranges, receiver_delays, recorders, receivers):
         "receiver_delays": "none" if apart else receiver_delays,
         "emissions": "known" if ranges else clocks.emissions,
         "receiver_clocks": "offset" if apart else clocks.receivers,
+        "offset_sigma": number("offset_sigma", clocks.offset_sigma),
+        "rate_sigma": number("rate_sigma", clocks.rate_sigma),
         "recorders": list(receivers) if apart else _recorders(recorders, receivers),
     }
 
