@@ -118,7 +118,7 @@ fn no_page_is_left_out() {
 fn calibrating_a_network() {
     let folder = tempfile::tempdir().expect("folder");
     let printed = run_page("docs/guide/calibrate-a-network.md", folder.path());
-    assert_eq!(printed.len(), 25);
+    assert_eq!(printed.len(), 26);
     for name in ["report.html", "network.json", "nodes.csv", "network.svg"] {
         assert!(folder.path().join(name).exists(), "{name}");
     }
@@ -129,6 +129,15 @@ fn calibrating_a_network() {
     assert_eq!(found["unique"], true);
     assert!((0.005..0.02).contains(&found["sigma"].as_f64().expect("sigma")), "{}", found["sigma"]);
     assert!(printed[3].1.contains("against the truth"));
+    // What the page says that clocks cost is printed.
+    let page = std::fs::read_to_string(root().join("docs/guide/calibrate-a-network.md")).expect("page");
+    let costs = &printed.iter().find(|(command, _)| command.ends_with("--example clocks")).expect("the command").1;
+    let costs: Vec<Vec<&str>> = costs.lines().map(|line| line.rsplitn(8, ' ').collect()).collect();
+    let said = page.lines().filter(|line| line.starts_with("| ") && line.contains("` | ")).filter(|line| {
+        let words = line.rsplitn(4, '|').collect::<Vec<_>>();
+        costs.iter().any(|cost| cost[6] == words[2].trim() && cost[2] == words[1].trim())
+    });
+    assert_eq!(said.count(), 8);
 }
 
 #[test]
