@@ -19,6 +19,10 @@ use crate::refine::Covariance;
 /// Name of the clock that all receivers share.
 const ALL_RECEIVERS: &str = "all receivers";
 
+/// Smallest numbers of starts, at most, before clocks are known: a network that few of them agree on may be a wrong one, whose
+/// clocks lead back to it.
+const BATCHES: usize = 5;
+
 /// Searches with the clocks of networks found before, at most.
 const ROUNDS: usize = 2;
 
@@ -27,7 +31,8 @@ pub(crate) fn search_with_clocks<const D: usize>(
     state: &mut State<'_, D>,
     sources: &[&dyn Hypotheses<D>],
 ) -> Result<(), CalibrateError<D>> {
-    let few = SearchOptions { max_starts: state.options.search.min_starts, ..state.options.search };
+    let SearchOptions { min_starts, max_starts, .. } = state.options.search;
+    let few = SearchOptions { max_starts: max_starts.min(BATCHES * min_starts.max(1)), ..state.options.search };
     let few = CalibrateOptions { search: few, ..state.options.clone() };
     state.search_like(state.measured.clone(), &few, sources)?;
     state.finish_with_clocks()?;
