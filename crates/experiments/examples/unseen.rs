@@ -10,8 +10,10 @@
 
 use experiments::trials::calibration::{Trial, judge, oracle};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-use tdoa::accuracy::cramer_rao_with_delays;
-use tdoa::{CalibrateOptions, Calibration, Errors, ReceiverDelays, ReceiverFault, SimulateOptions, Simulation};
+use tdoa::accuracy::{cramer_rao_with_clocks, cramer_rao_with_delays};
+use tdoa::{
+    CalibrateOptions, Calibration, Errors, ReceiverClocks, ReceiverDelays, ReceiverFault, SimulateOptions, Simulation,
+};
 use tdoa::{calibrate, simulate};
 
 const NOISE: f64 = 0.01;
@@ -23,7 +25,7 @@ const KINDS: [(&str, &str); 6] = [
     ("clean", "No errors beside noise"),
     ("gross", "Gross errors in 5 % of the measurements"),
     ("late", "One receiver late"),
-    ("clocks", "Receivers without a common clock, `--receiver-delays all`"),
+    ("clocks", "Receivers without a common clock, `--receiver-clocks offset`"),
     ("rivals", "Gross errors that leave few measurements over"),
     ("detours", "Late measurements: detours, exponential with a mean of 0.5 m"),
 ];
@@ -67,7 +69,7 @@ impl Case {
                         let name = format!("10r/{transmitters}s, clocks {delays} m apart, sigma {sigma:?}");
                         let mut case = Case::new(name, 10, transmitters);
                         case.simulate.delays = delays;
-                        (case.calibrate.receiver_delays, case.calibrate.sigma) = (ReceiverDelays::All, sigma);
+                        (case.calibrate.clocks.receivers, case.calibrate.sigma) = (ReceiverClocks::Offset, sigma);
                         all.push(case);
                     }
                 }
@@ -121,16 +123,11 @@ impl Case {
         let ideal = oracle(&simulation.pseudoranges, &truth, &options);
         let judged = [&found, &ideal].map(|result| {
             let mut trial = judge(&simulation, NOISE, seed, 0.0, result);
-            // The mean of all delays cannot be told from the offsets.
-            let delayed: Vec<usize> = match (self.simulate.fault, self.calibrate.receiver_delays) {
-                (_, ReceiverDelays::All) => (1..self.simulate.receivers).collect(),
-                (Some(ReceiverFault::Delay(_)), _) => vec![0],
-                _ => Vec::new(),
+            let (measured, outliers, truth) = (&simulation.pseudoranges, &simulation.outliers, &simulation.network);
+            trial.bound = match self.simulate.fault {
+                Some(ReceiverFault::Delay(_)) => cramer_rao_with_delays(measured, outliers, truth, NOISE, &[0]),
+                _ => cramer_rao_with_clocks(measured, outliers, truth, NOISE, &self.calibrate.clocks),
             };
-            if !delayed.is_empty() {
-                let (measured, truth) = (&simulation.pseudoranges, &simulation.network);
-                trial.bound = cramer_rao_with_delays(measured, &simulation.outliers, truth, NOISE, &delayed);
-            }
             trial
         });
         let [trial, ideal] = judged;
@@ -151,10 +148,7 @@ impl Case {
         };
         let (own, ideal) = (ratios(&|run| &run.0), ratios(&|run| &run.2));
         let named = |run: &Run| run.1.as_ref().is_some_and(|found| !found.receiver_errors.is_empty());
-        let named = match self.calibrate.receiver_delays {
-            ReceiverDelays::All => "-".to_string(),
-            _ => count(&named).to_string(),
-        };
+        let named = count(&named);
         let covered: usize = runs.iter().map(|(trial, ..)| trial.covered).sum();
         let ellipses: usize = runs.iter().map(|(trial, ..)| trial.ellipses).sum();
         println!(
@@ -178,7 +172,6 @@ impl Case {
         let Some(found) = found else { return };
         let std = found.receiver_std.iter().flatten().flatten().fold(0.0f64, |a, b| a.max(*b));
         let errors: Vec<String> = (found.receiver_errors.iter())
-            .filter(|_| self.calibrate.receiver_delays != ReceiverDelays::All)
             .map(|e| format!("{} {:?} {:.3} gain {:.1}", e.receiver, e.kind, e.size, e.gain))
             .collect();
         let simulation = self.simulation(trial.seed);

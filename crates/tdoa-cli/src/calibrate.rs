@@ -58,8 +58,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let date = arguments.html.as_ref().map(|_| provenance::Date::read()).transpose()?;
     let options = arguments.input.options(arguments.estimate_speed)?;
     let (units, said) = (options.units.unwrap_or_default(), options.units.is_some());
-    let measured =
-        arguments.clocks.recorded(input::measurements(&arguments.file, options)?, arguments.sending, units)?;
+    let mut measured = input::measurements(&arguments.file, options)?;
+    if arguments.are_started_apart() {
+        measured = arguments.clocks.apart(measured)?;
+    }
+    let measured = arguments.clocks.recorded(measured, arguments.sending, units)?;
     let nodes = |path: &Option<PathBuf>| path.as_deref().map(input::nodes).transpose();
     let (anchors, true_nodes) = (nodes(&arguments.anchors)?, nodes(&arguments.truth)?);
     let anchors = arguments.anchors.as_deref().zip(anchors);
@@ -167,11 +170,10 @@ impl Task<'_> {
             options.distances = input::distances(path, self.measured.receiver_names())?;
         }
         options.receiver_delays = match arguments.receiver_delays {
-            Delays::None => ReceiverDelays::None,
+            Delays::None | Delays::All => ReceiverDelays::None,
             Delays::Auto => ReceiverDelays::Auto,
-            Delays::All => ReceiverDelays::All,
         };
-        options.clocks = arguments.clocks.clocks(arguments.sending);
+        options.clocks = arguments.clocks.clocks(arguments.sending, arguments.are_started_apart());
         options.errors = match arguments.errors {
             Side::Auto => Errors::Auto,
             Side::Symmetric => Errors::Symmetric,
@@ -201,7 +203,7 @@ impl Task<'_> {
         Unfinished<D>: Serialize,
     {
         match error {
-            CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
+            CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Clocks { .. } => {
                 Failure::Undetermined(format!("{}: {error}", name(&self.arguments.file)))
             }
             CalibrateError::Cancelled(Some(best)) => {

@@ -78,11 +78,12 @@ enum Clock {
 }
 
 impl ReceiverClockArguments {
-    /// What is unknown of clocks.
-    pub(crate) fn clocks(&self, sending: EmissionArguments) -> Clocks {
+    /// What is unknown of clocks, where `--receiver-delays all` says that receivers are started `apart`, or not.
+    pub(crate) fn clocks(&self, sending: EmissionArguments, apart: bool) -> Clocks {
         let mut clocks = Clocks::default();
         clocks.emissions = sending.emissions();
         clocks.receivers = match self.receiver_clocks {
+            _ if apart => ReceiverClocks::Offset,
             Clock::Common => ReceiverClocks::Common,
             Clock::Offset => ReceiverClocks::Offset,
             Clock::Rate => ReceiverClocks::Rate,
@@ -110,6 +111,16 @@ impl ReceiverClockArguments {
             measured = measured.with_emission_times(times).map_err(Failure::unusable)?;
         }
         Ok(measured)
+    }
+
+    /// Measurements with a recorder for each receiver, as `--receiver-delays all` says.
+    pub(crate) fn apart(&self, measured: Pseudoranges) -> Result<Pseudoranges, Failure> {
+        if self.recorders.is_some() || !matches!(self.receiver_clocks, Clock::Common) {
+            let problem = "--receiver-delays all is short for --receiver-clocks offset with a recorder for each receiver: give one of both";
+            return Err(Failure::Unusable(problem.to_string()));
+        }
+        let names = measured.receiver_names().to_vec();
+        measured.with_recorders(names).map_err(Failure::unusable)
     }
 
     /// Names and values of the options.

@@ -258,8 +258,16 @@ fn ranges_have_no_offsets() {
     let of = |name: &str| found[name][0].as_f64().expect("number");
     assert!(but_for_one < with_offsets && of("offsets").abs() < 4.0 * of("offset_std"), "{but_for_one} {found}");
 
-    let (_, message, status) = calibrate(&[text(&file), "--ranges", "--receiver-delays", "all"]);
-    assert!(status == Some(2) && message.contains("--receiver-clocks offset"), "{message}");
+    // A clock of each receiver costs more, and is told: all agree with the send times.
+    let (with_clocks, found) = error(&["--ranges", "--receiver-delays", "all"]);
+    let clocks = found["clocks"].as_array().expect("list");
+    assert!(clocks.len() == 6 && without < with_clocks && with_clocks < 0.1, "{without} {with_clocks}");
+    for clock in clocks {
+        let of = |name: &str| clock[name].as_f64().expect("number");
+        assert!(of("offset").abs() < 4.0 * of("offset_std"), "{clock}");
+    }
+    let (_, message, status) = calibrate(&[text(&file), "--receiver-delays", "all", "--receiver-clocks", "rate"]);
+    assert!(status == Some(2) && message.contains("give one of both"), "{message}");
     let (_directory, file) = simulated("--receivers 6 --transmitters 12 --noise 0.01");
     let (_, message, status) = calibrate(&[text(&file), "--ranges"]);
     assert!(status == Some(2) && message.contains("below zero"), "{message}");

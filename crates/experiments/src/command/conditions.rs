@@ -3,7 +3,9 @@
 
 use crate::quantile::median;
 use crate::trials::calibration::{Trial, judge, oracle};
-use tdoa::{CalibrateOptions, Layout, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate};
+use tdoa::{
+    CalibrateOptions, Layout, ReceiverClocks, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate,
+};
 
 use super::book::Rows;
 use super::common::{Common, thread_seconds};
@@ -34,6 +36,7 @@ struct Condition {
     /// Factor on the deviation that the calibration is told.
     told: f64,
     delays: ReceiverDelays,
+    clocks: ReceiverClocks,
     /// Part of the warning that this condition should raise.
     warning: &'static str,
 }
@@ -48,6 +51,7 @@ impl Condition {
             known_sigma: false,
             told: 1.0,
             delays: ReceiverDelays::None,
+            clocks: ReceiverClocks::Common,
             warning: "seem",
         }
     }
@@ -90,9 +94,9 @@ impl Condition {
                 all.push(condition);
             }
         }
-        for (handling, delays) in [("none", ReceiverDelays::None), ("all", ReceiverDelays::All)] {
-            let mut condition = Condition::new(&format!("receivers unsynchronised by 2 m, delays {handling}"), 10, 20);
-            (condition.simulate.delays, condition.delays) = (2.0, delays);
+        for (handling, clocks) in [("common", ReceiverClocks::Common), ("offset", ReceiverClocks::Offset)] {
+            let mut condition = Condition::new(&format!("receivers unsynchronised by 2 m, clocks {handling}"), 10, 20);
+            (condition.simulate.delays, condition.clocks) = (2.0, clocks);
             all.push(condition);
         }
         for told in [1.0, 0.67, 0.5, 0.2] {
@@ -111,6 +115,7 @@ impl Condition {
         options.seed = seed;
         options.sigma = Some(self.told * simulated.noise).filter(|_| self.known_sigma);
         options.receiver_delays = self.delays;
+        options.clocks.receivers = self.clocks;
         let started = thread_seconds();
         let found = calibrate(&simulation.pseudoranges, &options);
         let seconds = thread_seconds() - started;

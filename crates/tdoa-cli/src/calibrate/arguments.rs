@@ -46,8 +46,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     pub(super) anchors: Option<PathBuf>,
     /// What is done about receivers whose measurements are all too long or too short, as by a
-    /// cable: told (none), estimated for those that show it (auto; drifting and jumping clocks and
-    /// moved receivers too), or estimated for all, as where clocks were started apart (all).
+    /// cable: told (none), or estimated for those that show it (auto; drifting and jumping clocks and
+    /// moved receivers too). `all` is short for `--receiver-clocks offset` with a recorder for each receiver.
     #[arg(long, value_enum, default_value = "none")]
     pub(super) receiver_delays: Delays,
     #[command(flatten)]
@@ -135,6 +135,11 @@ pub(super) enum Side {
 }
 
 impl Arguments {
+    /// Whether each receiver was started by itself.
+    pub(super) fn are_started_apart(&self) -> bool {
+        matches!(self.receiver_delays, Delays::All)
+    }
+
     /// The options that ask for files, with these.
     pub(super) fn outputs(&self) -> [(&'static str, Option<&Path>); 4] {
         [

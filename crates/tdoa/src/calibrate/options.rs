@@ -10,7 +10,8 @@ use hc::poly::counted;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// How to treat errors that all measurements of one receiver have in common.
+/// How to treat errors that all measurements of one receiver have in common. Where clocks were started apart, all receivers have
+/// one: [`Clocks::receivers`](crate::Clocks::receivers).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ReceiverDelays {
@@ -21,10 +22,6 @@ pub enum ReceiverDelays {
     /// together with the network. For a receiver that was moved, the longer part of the
     /// measurements is kept.
     Auto,
-    /// Every receiver has an unknown constant delay, for instance because their clocks were started
-    /// apart. For m receivers this makes m - 1 more unknowns, and at least 3m + 3n - 4 measurements
-    /// are needed, for instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
-    All,
 }
 
 /// How measurements are wrong if they are wrong by more than noise.
@@ -213,9 +210,6 @@ impl<const D: usize> CalibrateOptions<D> {
         if self.errors == Errors::OneSided && self.receiver_delays != ReceiverDelays::None {
             return Err(CalibrateError::OneSidedDelays);
         }
-        if self.clocks != Clocks::default() && self.receiver_delays == ReceiverDelays::All {
-            return Err(CalibrateError::RangesWithDelays);
-        }
         if self.clocks.receivers != ReceiverClocks::Common && self.errors == Errors::OneSided {
             return Err(CalibrateError::OneSidedDelays);
         }
@@ -286,22 +280,6 @@ pub enum CalibrateError<const D: usize = 2> {
         /// The given value.
         value: f64,
     },
-    /// There are fewer measurements than unknowns, and receivers have delays.
-    #[error(
-        "{} cannot determine {}, a delay of each of {} among them; measure more transmitters, or --receiver-delays auto if \
-         only a few receivers have one",
-        counted(*.measurements, "measurement"),
-        counted(*.unknowns, "unknown"),
-        counted(*.receivers, "receiver")
-    )]
-    Delays {
-        /// Number of usable measurements.
-        measurements: usize,
-        /// Number of unknowns.
-        unknowns: usize,
-        /// Number of receivers.
-        receivers: usize,
-    },
     /// There are fewer measurements than unknowns, those of clocks among them.
     #[error(
         "{} cannot determine {}, {} of clocks among them; measure more transmitters, put more receivers on one recorder, or leave unknowns of \
@@ -324,12 +302,6 @@ pub enum CalibrateError<const D: usize = 2> {
          with a delay; give --errors one-sided or --receiver-delays, not both"
     )]
     OneSidedDelays,
-    /// Delays of all receivers, with what is known of clocks.
-    #[error(
-        "delays of all receivers are unknown offsets of their clocks: beside what is known of emissions or clocks give --receiver-clocks offset \
-         in place of --receiver-delays all, or --receiver-delays auto if only a few receivers have one"
-    )]
-    RangesWithDelays,
     /// Many distances are below zero.
     #[error(
         "{} below zero, among them that of {receiver} and {transmitter}, {value} m; leave --ranges out if transmitters have unknown offsets",

@@ -111,6 +111,11 @@ impl<'a, const D: usize> State<'a, D> {
         if self.has_delays_of_all() { &self.taken[1..] } else { &self.taken }
     }
 
+    /// Whether each receiver's clock, or that of its recorder, is unknown.
+    pub(crate) fn has_clocks_of_receivers(&self) -> bool {
+        self.measured.unknown_clocks().is_some() || self.has_delays_of_all()
+    }
+
     /// Whether a delay of every receiver is taken out.
     pub(crate) fn has_delays_of_all(&self) -> bool {
         self.taken.len() == self.measured.receivers()

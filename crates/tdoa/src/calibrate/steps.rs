@@ -2,10 +2,9 @@
 
 use crate::calibrate::input::anchors;
 use crate::calibrate::input::impossible::without_impossible;
-use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
 use crate::calibrate::input::ranges::with_clocks;
 use crate::calibrate::input::selection::Input;
-use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
+use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, check};
 use crate::calibrate::receivers::own_clocks::search_with_clocks;
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::candidates::search_candidates;
@@ -53,7 +52,7 @@ impl<'a, const D: usize> Draft<'a, D> {
         check(monitor)?;
         usable.warnings.extend(left_out);
         let known = options.sigma.or(if table.knows_sigmas() { Some(1.0) } else { None });
-        let input = Input::new(table, usable, options.receiver_delays == ReceiverDelays::All);
+        let input = Input::new(table, usable);
         let state = State::new(input.centred(), known, options, monitor);
         let observations = &state.observations;
         let (measurements, unknowns) = (observations.len(), observations.unknowns());
@@ -101,9 +100,7 @@ impl<'a, const D: usize> Draft<'a, D> {
 
     fn search(&mut self, sources: &[&dyn Hypotheses<D>]) -> Result<(), CalibrateError<D>> {
         let Draft { state, input } = self;
-        if state.options.receiver_delays == ReceiverDelays::All {
-            search_without_delays(state, sources)?;
-        } else if state.measured.unknown_clocks().is_some() {
+        if state.measured.unknown_clocks().is_some() {
             search_with_clocks(state, sources)?;
         } else if let Some((layout, places)) = local_layout(input, state, sources)? {
             layout.refine(state, &places)?;
@@ -125,29 +122,11 @@ impl<'a, const D: usize> Draft<'a, D> {
         if state.anchors.is_some() {
             // They were found without the known positions.
             state.neighbours.clear();
-        } else if state.options.errors != Errors::OneSided && !state.has_delays_of_all() {
+        } else if state.options.errors != Errors::OneSided && !state.has_clocks_of_receivers() {
             state.compare_with_one_sided()?;
         }
         Ok(())
     }
-}
-
-/// Searches networks for measurements less first guesses of the receivers' delays.
-fn search_without_delays<const D: usize>(
-    state: &mut State<'_, D>,
-    sources: &[&dyn Hypotheses<D>],
-) -> Result<(), CalibrateError<D>> {
-    // What fits best before the delays are known says little.
-    let options = CalibrateOptions { alternative_margin: 1e9, ..state.options.clone() };
-    let measured = on_a_grid(&without_middle_delays(&state.measured));
-    let mut found = State::new(measured, None, &options, state.monitor);
-    let ended = search_candidates(&mut found, sources);
-    (state.so_far, state.ranked, state.deviation) = (found.so_far, found.ranked, found.deviation);
-    (state.floor, state.starts, state.doubts_choice) = (found.floor, found.starts, found.doubts_choice);
-    if state.measured.has_candidates() {
-        state.take_choice(state.measured.choosing_as(&found.measured));
-    }
-    ended
 }
 
 /// Where hearing is local: the layout of the receivers by submaps, and which of them it places. Nodes that
@@ -188,7 +167,7 @@ fn local_layout<const D: usize>(
     }
     let receivers = places.iter().map(|&i| input.usable.receivers[i]).collect();
     let transmitters = columns.iter().map(|&j| input.usable.transmitters[j]).collect();
-    *input = Input::new(input.table.clone(), Usable { receivers, transmitters, warnings }, false);
+    *input = Input::new(input.table.clone(), Usable { receivers, transmitters, warnings });
     *state = State::new(input.centred(), known, options, monitor);
     Ok(Some((layout, places)))
 }

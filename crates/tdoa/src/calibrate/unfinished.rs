@@ -71,7 +71,7 @@ fn scatter<T: Clone>(length: usize, at: &[usize], values: Vec<Option<T>>) -> Vec
 #[cfg(test)]
 mod tests {
     use crate::calibrate::{CalibrateError, CalibrateOptions, SearchOptions, calibrate_with};
-    use crate::{Errors, ReceiverDelays, ReceiverFault, SimulateOptions, simulate};
+    use crate::{Clocks, Errors, ReceiverClocks, ReceiverDelays, ReceiverFault, SimulateOptions, simulate};
     use hc::{Monitor, Stage};
     use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -144,17 +144,21 @@ mod tests {
         const MOMENTS: u64 = 6;
         let moved = SimulateOptions { fault: Some(ReceiverFault::Move(0.3)), ..SimulateOptions::default() };
         let late = SimulateOptions { detours: 0.3, detour_size: 0.5, ..SimulateOptions::default() };
-        for (made, errors, receiver_delays) in [
-            (SimulateOptions { outliers: 0.1, ..SimulateOptions::default() }, Errors::Symmetric, ReceiverDelays::None),
-            (moved, Errors::Symmetric, ReceiverDelays::Auto),
-            (SimulateOptions::default(), Errors::Symmetric, ReceiverDelays::All),
-            (late, Errors::OneSided, ReceiverDelays::None),
+        let outliers = SimulateOptions { outliers: 0.1, ..SimulateOptions::default() };
+        let (none, auto) = (ReceiverDelays::None, ReceiverDelays::Auto);
+        let (common, offset) = (ReceiverClocks::Common, ReceiverClocks::Offset);
+        for (made, errors, receiver_delays, receivers) in [
+            (outliers, Errors::Symmetric, none, common),
+            (moved, Errors::Symmetric, auto, common),
+            (SimulateOptions::default(), Errors::Symmetric, none, offset),
+            (late, Errors::OneSided, none, common),
         ] {
             let made = SimulateOptions { receivers: 7, transmitters: 10, noise: 0.01, seed: 3, ..made };
             let made = simulate(&made).unwrap();
             let options = CalibrateOptions {
                 errors,
                 receiver_delays,
+                clocks: Clocks { receivers, ..Clocks::default() },
                 search: SearchOptions {
                     max_starts: 32,
                     min_starts: 16,
@@ -175,7 +179,7 @@ mod tests {
             assert!(whole.is_ok());
             for k in 0..MOMENTS {
                 let (ended, _) = run(asked * k / MOMENTS);
-                let Err(CalibrateError::Cancelled(best)) = ended else { panic!("{errors:?} {receiver_delays:?} {k}") };
+                let Err(CalibrateError::Cancelled(best)) = ended else { panic!("{errors:?} {receivers:?} {k}") };
                 assert!(best.is_some() || 2 * k < MOMENTS);
                 let placed = best.iter().flat_map(|best| best.receivers.iter().chain(&best.transmitters));
                 assert!(placed.flatten().flatten().all(|x| x.is_finite()));

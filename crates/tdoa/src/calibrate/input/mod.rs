@@ -3,7 +3,6 @@
 pub(crate) mod anchors;
 pub(crate) mod first_clocks;
 pub(crate) mod impossible;
-pub(crate) mod middle_delays;
 pub(crate) mod ranges;
 pub(crate) mod selection;
 pub(crate) mod speed;

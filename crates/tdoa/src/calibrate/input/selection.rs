@@ -1,7 +1,6 @@
 //! The part of a table that is calibrated.
 
 use crate::calibrate::input::first_clocks::first_clocks;
-use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
 use crate::calibrate::unfinished::Unfinished;
 use crate::clocks::Emissions;
 use crate::degeneracy::Usable;
@@ -25,21 +24,19 @@ pub(crate) struct Input<'a> {
 }
 
 impl<'a> Input<'a> {
-    /// The nodes that take part in a calibration, in which all receivers may be `delayed`.
-    pub(crate) fn new(table: Cow<'a, Pseudoranges>, usable: Usable, delayed: bool) -> Input<'a> {
+    /// The nodes that take part in a calibration.
+    pub(crate) fn new(table: Cow<'a, Pseudoranges>, usable: Usable) -> Input<'a> {
         let selected = table.select(&usable.receivers, &usable.transmitters);
         let clocks = selected.unknown_clocks().map_or_else(Vec::new, |recorders| first_clocks(&selected, recorders));
         let selected = synchronised(selected, &clocks);
-        // What is subtracted does not depend on the delays.
-        let shifts = match (table.emissions(), delayed) {
-            (Emissions::Known, _) => (0..selected.transmitters()).map(|j| selected.emission_time(j)).collect(),
-            (Emissions::Constant, _) => {
+        let shifts = match table.emissions() {
+            Emissions::Known => (0..selected.transmitters()).map(|j| selected.emission_time(j)).collect(),
+            Emissions::Constant => {
                 let rest = selected.map(|_, j, value| value - selected.emission_time(j));
                 let middle = median(rest.cells().values().to_vec()).unwrap_or_default();
                 (0..selected.transmitters()).map(|j| middle + selected.emission_time(j)).collect()
             }
-            (Emissions::Unknown, true) => middles(&without_middle_delays(&selected)),
-            (Emissions::Unknown, false) => middles(&selected),
+            Emissions::Unknown => middles(&selected),
         };
         Input { table, usable, shifts, clocks }
     }
@@ -69,4 +66,15 @@ pub(crate) fn synchronised(measured: Pseudoranges, clocks: &[[f64; 2]]) -> Pseud
 fn middles(measured: &Pseudoranges) -> Vec<f64> {
     let column = |j: usize| (0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect();
     (0..measured.transmitters()).map(|j| median(column(j)).unwrap_or(0.0)).collect()
+}
+
+/// The measurements on a grid far finer than any noise: a search is chaotic, so that mere rounding
+/// would make it depend on the size of the delays.
+fn on_a_grid(measured: &Pseudoranges) -> Pseudoranges {
+    let largest = measured.cells().values().iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let step = (largest.log2().floor() - 30.0).exp2();
+    if !step.is_normal() {
+        return measured.clone();
+    }
+    measured.map(|_, _, value| (value / step).round() * step)
 }

@@ -10,7 +10,7 @@ use crate::calibrate::judge::neighbours::{BEYOND, Neighbour, Reason, widen};
 use crate::calibrate::judge::orientation::looks_transposed;
 use crate::calibrate::judge::raised::may_be_raised;
 use crate::calibrate::judge::weak_nodes::{WeakNodes, doubtful_receivers};
-use crate::calibrate::options::{CalibrateError, Errors, ReceiverDelays};
+use crate::calibrate::options::{CalibrateError, Errors};
 use crate::calibrate::search::deviation::{inlier_deviation, typical_deviation};
 use crate::calibrate::search::one_sided::Information;
 use crate::calibrate::search::same_network::{same, same_receivers, same_transmitters};
@@ -166,8 +166,8 @@ impl<const D: usize> State<'_, D> {
         let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(measured);
         let doubtful = doubtful_receivers(measured, &kept, band / best.size());
         // Offsets of transmitters in the rows count where residuals are beyond a hundredth of the network's size.
-        // Of distances, rows and columns say the same.
-        let transposed = options.receiver_delays != ReceiverDelays::All
+        // Of distances, rows and columns say the same, and recorders have offsets that are as good.
+        let transposed = measured.unknown_clocks().is_none()
             && !measured.are_ranges()
             && misfit > 0.01 * best.size()
             && looks_transposed(&input.table.select(&input.usable.receivers, &input.usable.transmitters));

@@ -1,6 +1,6 @@
 //! Whether a plane is out of the question, before errors of receivers are looked for in it.
 
-use crate::calibrate::options::{Errors, ReceiverDelays};
+use crate::calibrate::options::Errors;
 use crate::calibrate::search::local::hearing_is_local;
 use crate::calibrate::search::truncated_cost::{OUTLIER_COST, truncated};
 use crate::calibrate::steps::Draft;
@@ -17,8 +17,7 @@ const SPARE: f64 = 1.5;
 /// errors of fewer receivers are no reason for it. Then what a plane would have of such errors need not be known.
 pub(super) fn plane_is_excluded(plane: &Draft<'_, 2>, space: &Draft<'_, 3>) -> bool {
     let (measured, options) = (&plane.state.measured, plane.state.options);
-    let has_delays = options.receiver_delays == ReceiverDelays::All;
-    if has_delays || options.errors == Errors::OneSided || hearing_is_local(measured) {
+    if options.errors == Errors::OneSided || hearing_is_local(measured) {
         return false;
     }
     let (flat, best) = (&plane.state.ranked[0].network, &space.state.ranked[0].network);

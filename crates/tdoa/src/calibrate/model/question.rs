@@ -98,8 +98,6 @@ impl Question<'_> {
         let receiver_delays = match options.receiver_delays {
             ReceiverDelays::None => ReceiverDelays::Auto,
             ReceiverDelays::Auto => ReceiverDelays::None,
-            // Errors of all are no doubt of one.
-            ReceiverDelays::All => return Ok(None),
         };
         // Its search would find the same.
         let options = CalibrateOptions { receiver_delays, search: from_sources(1, options.search), ..options.clone() };

@@ -23,12 +23,7 @@ impl<const D: usize> State<'_, D> {
     /// nearly all of them.
     pub(crate) fn level(&mut self) -> Result<(), CalibrateError<D>> {
         let State { options, known, .. } = *self;
-        if D != 3
-            || self.anchors.is_some()
-            || self.has_delays_of_all()
-            || self.measured.unknown_clocks().is_some()
-            || options.errors == Errors::OneSided
-        {
+        if D != 3 || self.anchors.is_some() || self.has_clocks_of_receivers() || options.errors == Errors::OneSided {
             return Ok(());
         }
         let (modes, of_plane) = self.height_modes()?;

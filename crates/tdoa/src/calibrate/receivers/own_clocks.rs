@@ -323,6 +323,28 @@ mod tests {
     }
 
     #[test]
+    fn the_network_does_not_depend_on_how_far_clocks_are_apart() {
+        const SIGMA: f64 = 0.01;
+        for seed in 0..2 {
+            let at = |delays: f64| {
+                let mut made = SimulateOptions { receivers: 10, transmitters: 30, delays, seed, ..Default::default() };
+                made.noise = SIGMA;
+                let made = simulate(&made).unwrap();
+                let mut options = CalibrateOptions { sigma: Some(SIGMA), seed, ..Default::default() };
+                options.clocks.receivers = ReceiverClocks::Offset;
+                let found = calibrate(&made.pseudoranges, &options).unwrap();
+                let receivers: Vec<[f64; 2]> = found.receivers.iter().flatten().copied().collect();
+                (align(&receivers, &made.network.receivers, false).unwrap().rms, receivers, found.unique)
+            };
+            let (error, first, unique) = at(0.1);
+            assert!(unique && error < 5.0 * SIGMA, "seed {seed}: {error}");
+            let (_, receivers, unique) = at(1000.0);
+            let apart = align(&receivers, &first, false).unwrap().rms;
+            assert!(unique && apart < 1e-3 * SIGMA, "seed {seed}: {apart}");
+        }
+    }
+
+    #[test]
     fn fewer_measurements_than_unknowns_are_refused() {
         let made = simulate(&SimulateOptions { receivers: 6, transmitters: 5, ..Default::default() }).unwrap();
         let mut options = CalibrateOptions::default();

@@ -21,7 +21,7 @@ use crate::refine::{Cancelled, Motion, Projection, RefinedNetwork, dot, gram};
 const ROUNDS: usize = 6;
 
 /// Steps of estimating the errors and refining the network in turns.
-pub(crate) const STEPS: usize = 12;
+const STEPS: usize = 12;
 
 /// An error below this many of its own deviations, or below this share of the deviation of a
 /// measurement, is none.
@@ -46,7 +46,6 @@ impl<const D: usize> State<'_, D> {
                 self.take_out_shown()?;
                 self.prefer_delays_of_all(&before)?;
             }
-            ReceiverDelays::All => self.take_out_all()?,
         }
         // They are near the network that has the errors.
         if self.taken.is_empty() {
@@ -212,7 +211,7 @@ fn linear<const D: usize>(faults: &[Fault<D>]) -> impl Iterator<Item = &Fault<D>
 }
 
 /// Changes the sizes of the errors that have one by these steps; the largest step.
-pub(crate) fn moved<const D: usize>(faults: &mut [Fault<D>], steps: Vec<f64>) -> f64 {
+fn moved<const D: usize>(faults: &mut [Fault<D>], steps: Vec<f64>) -> f64 {
     let mut largest = 0.0f64;
     for (fault, step) in linear_mut(faults).zip(steps) {
         fault.size[0] += step;

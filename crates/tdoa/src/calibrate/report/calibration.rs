@@ -132,7 +132,7 @@ pub struct Calibration<const D: usize = 2> {
     #[serde(default = "agree")]
     pub anchors_agree: bool,
     /// Errors of single receivers that the measurements show, most significant first, or delays of
-    /// all receivers, relative to their mean.
+    /// all receivers, relative to their mean, where [`ReceiverDelays::Auto`](crate::ReceiverDelays::Auto) finds these.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
     /// Receivers of which the measurements show two places, most likely as they hear a reflection, which is left out.

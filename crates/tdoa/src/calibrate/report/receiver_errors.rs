@@ -101,7 +101,7 @@ impl<const D: usize> State<'_, D> {
             Reason::Delays { .. } => {
                 return Some(format!(
                     "all receivers may have delays of their own, which these measurements cannot tell for sure; without these the receivers \
-                     lie {apart} elsewhere (see alternatives): use --receiver-delays all if their clocks were started apart, or measure more \
+                     lie {apart} elsewhere (see alternatives): use --receiver-clocks offset if their clocks were started apart, or measure more \
                      transmitters"
                 ));
             }
@@ -133,7 +133,7 @@ impl<const D: usize> State<'_, D> {
                 self.left.iter().map(|f| self.measured.receiver_names()[f.receiver].clone()).collect();
             warnings.push(format!(
                 "many receivers seem to have errors of their own ({}): are their clocks synchronised{}? \
-                 --receiver-delays all estimates a delay for each",
+                 --receiver-clocks offset estimates one for each recorder",
                 list(&names),
                 if D == 2 { ", and do all nodes lie in one plane" } else { "" }
             ));
@@ -142,7 +142,7 @@ impl<const D: usize> State<'_, D> {
         if all {
             if self.options.receiver_delays == ReceiverDelays::Auto {
                 warnings.push(
-                    "all receivers seem to have delays of their own, which were estimated and taken out; --receiver-delays all says that they do"
+                    "all receivers seem to have delays of their own, which were estimated and taken out; --receiver-clocks offset says that they do"
                         .to_string(),
                 );
             }

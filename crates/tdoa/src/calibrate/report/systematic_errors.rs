@@ -78,7 +78,7 @@ mod tests {
     use crate::points::trace;
     use crate::summary::summary;
     use crate::{
-        CalibrateOptions, Calibration, Errors, ReceiverDelays, SimulateOptions, SystematicErrors, calibrate, simulate,
+        CalibrateOptions, Calibration, Errors, ReceiverClocks, SimulateOptions, SystematicErrors, calibrate, simulate,
     };
 
     const SIGMA: f64 = 0.01;
@@ -134,8 +134,9 @@ mod tests {
     }
 
     #[test]
-    fn delays_that_are_taken_out_are_no_systematic_errors() {
-        let options = CalibrateOptions { receiver_delays: ReceiverDelays::All, ..Default::default() };
+    fn clocks_that_are_unknown_are_no_systematic_errors() {
+        let mut options = CalibrateOptions::default();
+        options.clocks.receivers = ReceiverClocks::Offset;
         for seed in 0..3 {
             let found = run(2.0, seed, &options);
             let errors = found.systematic.unwrap();

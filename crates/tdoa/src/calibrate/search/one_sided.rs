@@ -258,7 +258,7 @@ mod tests {
     use crate::accuracy::cramer_rao;
     use crate::align::align;
     use crate::calibrate::SAME_NETWORK;
-    use crate::{CalibrateError, CalibrateOptions, Calibration, Errors, ReceiverDelays};
+    use crate::{CalibrateError, CalibrateOptions, Calibration, Errors, ReceiverClocks, ReceiverDelays};
     use crate::{Layout, SimulateOptions, Simulation, calibrate, simulate};
 
     const SIGMA: f64 = 0.01;
@@ -371,8 +371,11 @@ mod tests {
     #[test]
     fn delays_of_receivers_are_refused_beside() {
         let simulation = simulated(8, 20, 0.3, 1);
-        for receiver_delays in [ReceiverDelays::Auto, ReceiverDelays::All] {
-            let options = CalibrateOptions { errors: Errors::OneSided, receiver_delays, ..Default::default() };
+        let mut delays = CalibrateOptions { errors: Errors::OneSided, ..Default::default() };
+        let mut clocks = delays.clone();
+        delays.receiver_delays = ReceiverDelays::Auto;
+        clocks.clocks.receivers = ReceiverClocks::Offset;
+        for options in [delays, clocks] {
             assert_eq!(calibrate(&simulation.pseudoranges, &options), Err(CalibrateError::OneSidedDelays));
         }
     }
