@@ -77,7 +77,7 @@ impl Case {
     /// calibrated.
     ///
     /// # Errors
-    /// Sizes that [`simulate`] refuses.
+    /// Sizes that [`simulate()`] refuses.
     pub fn outcome<const D: usize>(
         self,
         receivers: usize,
