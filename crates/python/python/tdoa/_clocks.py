@@ -113,3 +113,4 @@ def _recorders(given, receivers):
 
 for _class in (Clocks, RecorderClock):
     _class.__module__ = "tdoa"
+del _class
