@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
 use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
-use tdoa::{Emissions, Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
+use tdoa::{Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
 static IN_PLANE: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
@@ -44,14 +44,7 @@ pub(crate) fn solve_network<'py>(
         let mut options = MinimalOptions::default();
         options.tolerance = asked.tolerance.unwrap_or(options.tolerance);
         options.first_under = asked.first_under;
-        options.emissions = match &*asked.emissions {
-            "unknown" => Emissions::Unknown,
-            "constant" => Emissions::Constant,
-            "known" => Emissions::Known,
-            other => {
-                return Err(Failure::Input(format!("emissions must be unknown, constant or known, not {other:?}")));
-            }
-        };
+        options.emissions = emissions(&asked.emissions)?;
         options.start = match &*asked.start {
             "stored" => MinimalStart::Stored,
             "polyhedral" => MinimalStart::Polyhedral,

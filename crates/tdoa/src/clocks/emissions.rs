@@ -20,11 +20,6 @@ pub enum Emissions {
 }
 
 impl Emissions {
-    /// [`Emissions::Known`] where measurements are ranges, [`Emissions::Unknown`] otherwise.
-    pub fn of_ranges(are_ranges: bool) -> Emissions {
-        if are_ranges { Emissions::Known } else { Emissions::Unknown }
-    }
-
     /// The offset of a transmitter where it is not its own: that of all, if it is given.
     pub(crate) fn shared(self, offset: Option<f64>) -> Option<f64> {
         match self {

@@ -75,6 +75,9 @@ fn against_schedule(measured: &Pseudoranges, recorders: &Recorders) -> f64 {
 
 /// Offset and drift of differences at these times: the middle, and the slope if there may be one and it is no chance.
 fn line(apart: &[(f64, f64)], recorders: &Recorders) -> [f64; 2] {
+    if apart.is_empty() {
+        return [0.0; 2];
+    }
     let drift = if recorders.drift() { slope(apart, recorders.information()[1]) } else { 0.0 };
     let mut left: Vec<f64> = apart.iter().map(|(time, apart)| apart - drift * time).collect();
     left.sort_by(f64::total_cmp);

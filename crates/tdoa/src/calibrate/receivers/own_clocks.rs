@@ -86,7 +86,11 @@ impl<const D: usize> State<'_, D> {
         let clocks = self.ranked[0].network.clocks.clone();
         self.measured = synchronised(self.measured.clone(), &clocks);
         self.observations = Observations::new(&self.measured, |_, _| true);
-        self.ranked.iter_mut().for_each(|refined| add(&mut refined.network.clocks, &clocks, -1.0));
+        for refined in &mut self.ranked {
+            add(&mut refined.network.clocks, &clocks, -1.0);
+            // Those of earlier searches are none of this one's.
+            refined.starts = refined.starts.min(self.starts);
+        }
         Ok(())
     }
 

@@ -7,18 +7,19 @@ use serde::{Deserialize, Serialize};
 /// Expected deviations of clocks beyond which a clock is no chance.
 const SURPRISING: f64 = 4.0;
 
-/// The clock of a recorder, against that of the first one; where send times are known, its offset is against these.
+/// The clock of a recorder, against that of the first one; where send times are known, its offset is against these, and where
+/// they [were given](crate::Pseudoranges::with_emission_times) its rate too.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RecorderClock {
-    /// Name of the recorder: of its receiver where no recorders were given.
+    /// Name of the recorder: of its receiver where no recorders were given, `all receivers` where these share one.
     pub recorder: String,
     /// By how much its readings are larger than those of the reference, metres: where clocks run at rates of their own,
     /// at the reading [`at`](Self::at).
     pub offset: f64,
     /// Standard deviation of the offset, metres; `None` where the measurements do not determine it.
     pub offset_std: Option<f64>,
-    /// By how much its clock runs faster than that of the first recorder, as a share: 1e-6 is one part in a million. `None`
+    /// By how much its clock runs faster than the reference, as a share: 1e-6 is one part in a million. `None`
     /// where rates are the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
