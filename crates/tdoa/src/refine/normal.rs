@@ -369,6 +369,7 @@ impl<const D: usize> Normal<D> {
             target.transmitters[j] = from_fn(|k| from[k] + position[k]);
             target.offsets[j] = network.offsets[j] + offset;
         }
+        target.clocks.clone_from(&network.clocks);
         observations.clocks().add(target, &self.reduced_steps[D * self.receivers..], 1.0);
     }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::clocks::Emissions;
+use crate::clocks::tests::{Model, models};
 use crate::network::tests::random;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::NetworkRefiner;
@@ -56,5 +57,42 @@ fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
             is_eliminated_as_defined::<2>(hearing, are_ranges);
             is_eliminated_as_defined::<3>(hearing, are_ranges);
         }
+    }
+}
+
+/// Equations of a network with clocks, linearised, and solved with this damping.
+fn solved<const D: usize>(observations: &Observations<D>, network: &Network<D>) -> Normal<D> {
+    let mut normal = Normal::new(observations);
+    let mut all = vec![0.0; observations.len() + observations.pins().len()];
+    crate::refine::residuals(observations, network, &mut all);
+    normal.linearise_by(observations, network, &all, |_, e| (1.0, e), |e| (1.0, e));
+    assert!(normal.solve(observations, 1e-3, &Monitor::default()).unwrap());
+    normal
+}
+
+/// A network off the one that was measured, and its measurements.
+fn moved<const D: usize>(model: Model) -> (Network<D>, Observations<D>) {
+    let (mut network, measured) = model.network::<D>(10, 12);
+    network.receivers.iter_mut().enumerate().for_each(|(i, r)| r[i % D] += 0.1);
+    (network, Observations::new(&measured, |_, _| true))
+}
+
+fn steps_begin_at_the_network<const D: usize>(model: Model) {
+    let (network, observations) = moved::<D>(model);
+    let normal = solved(&observations, &network);
+    let (mut target, mut other) = (network.clone(), network.clone());
+    other.clocks.iter_mut().flatten().for_each(|clock| *clock += 7.0);
+    other.receivers[0][0] += 7.0;
+    other.offsets[0] += 7.0;
+    normal.step(&observations, &network, &mut target);
+    normal.step(&observations, &network, &mut other);
+    assert!(target != network && target == other, "{model:?}");
+}
+
+#[test]
+fn a_step_depends_on_the_network_that_it_begins_at_alone() {
+    for model in models() {
+        steps_begin_at_the_network::<2>(model);
+        steps_begin_at_the_network::<3>(model);
     }
 }
