@@ -23,7 +23,13 @@ impl Observation {
     /// Pseudorange less what the recorder's clock adds in a network, metres.
     #[inline]
     pub(crate) fn synchronised<const D: usize>(&self, network: &Network<D>) -> f64 {
-        match network.clocks.get(self.receiver) {
+        self.without_clock(&network.clocks)
+    }
+
+    /// Pseudorange less what one of these clocks adds, which receivers have, metres.
+    #[inline]
+    pub(crate) fn without_clock(&self, clocks: &[[f64; 2]]) -> f64 {
+        match clocks.get(self.receiver) {
             None => self.value,
             Some([offset, drift]) => self.value - offset - drift * self.time,
         }

@@ -295,12 +295,6 @@ impl Pseudoranges {
         Pseudoranges { cells, candidates: Some(candidates), ..self.clone() }
     }
 
-    /// This matrix with the choice of another one of the same cells.
-    pub(crate) fn choosing_as(&self, other: &Pseudoranges) -> Pseudoranges {
-        let of = |i, j| other.candidates.as_ref().and_then(|all| all.get(i, j)).map_or(0, Candidates::chosen);
-        self.choosing(|i, j, _| of(i, j))
-    }
-
     /// Whether another choice among the same candidates differs from this one.
     pub(crate) fn chooses_otherwise(&self, other: &Pseudoranges) -> bool {
         self.doubtful().zip(other.doubtful()).any(|(a, b)| a.2.chosen() != b.2.chosen())

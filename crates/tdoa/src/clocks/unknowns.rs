@@ -2,6 +2,7 @@
 
 use crate::clocks::prior::{ClockPrior, ExpectedClock};
 use crate::clocks::{Emissions, Recorders};
+use crate::loss::Loss;
 use crate::network::Network;
 
 /// Which unknowns the clocks have beside the network's nodes.
@@ -64,6 +65,15 @@ impl ClockUnknowns {
         }
     }
 
+    /// Clocks of all receivers from those of some of them: of a recorder that none of these has, none is known.
+    pub(crate) fn of_all(&self, clocks: &[[f64; 2]], receivers: &[usize]) -> Vec<[f64; 2]> {
+        let of = |unknowns: &[Option<usize>; 2]| {
+            let place = receivers.iter().position(|i| self.recorders.get(*i) == Some(unknowns));
+            place.and_then(|place| clocks.get(place)).copied().unwrap_or_default()
+        };
+        self.recorders.iter().map(of).collect()
+    }
+
     /// Adds a share of changes of these unknowns to those of a network.
     pub(crate) fn add<const D: usize>(&self, network: &mut Network<D>, changes: &[f64], share: f64) {
         if let Some(constant) = self.constant {
@@ -93,6 +103,12 @@ impl ClockUnknowns {
     #[inline]
     pub(crate) fn prior(&self) -> Option<&ClockPrior> {
         self.prior.as_ref()
+    }
+
+    /// What it costs, by this loss, that clocks are not as expected.
+    pub(crate) fn unexpected<const D: usize>(&self, network: &Network<D>, loss: &Loss) -> f64 {
+        let of = |prior: &ClockPrior| loss.prior_weight(prior.deviation()) / loss.scale.powi(2) * prior.misfit(network);
+        self.prior.as_ref().map_or(0.0, of)
     }
 
     /// The offset and the drift of a receiver's recorder among these unknowns, as far as they are unknown.

@@ -16,12 +16,15 @@ pub struct PartialNetwork<const D: usize = 2> {
     pub receivers: Vec<Option<[f64; D]>>,
     /// Positions of transmitters, metres, with their offsets.
     pub transmitters: Vec<Option<([f64; D], f64)>>,
+    /// Per receiver, what its clock adds to measurements, metres: an offset, and a drift over half the recording. Empty where
+    /// nothing is known of clocks.
+    pub clocks: Vec<[f64; 2]>,
 }
 
 impl<const D: usize> PartialNetwork<D> {
     /// A network with these numbers of receivers and transmitters, none of them known.
     pub fn unknown(receivers: usize, transmitters: usize) -> Self {
-        PartialNetwork { receivers: vec![None; receivers], transmitters: vec![None; transmitters] }
+        PartialNetwork { receivers: vec![None; receivers], transmitters: vec![None; transmitters], clocks: Vec::new() }
     }
 
     /// Enters a network for the nodes with these indices.
@@ -66,7 +69,8 @@ pub(crate) fn extend<const D: usize>(
     let located: Option<Vec<_>> = part.transmitters.into_iter().collect();
     let receivers: Option<Vec<_>> = part.receivers.into_iter().collect();
     Ok(located.zip(receivers).map(|(located, receivers)| {
-        Network::new(receivers, located.iter().map(|t| t.0).collect(), located.iter().map(|t| t.1).collect())
+        let (transmitters, offsets) = located.into_iter().unzip();
+        Network { receivers, transmitters, offsets, clocks: part.clocks }
     }))
 }
 
@@ -87,7 +91,7 @@ fn locate_transmitters<const D: usize>(
         check(monitor)?;
         let sight = |o: &Observation| {
             let position = part.receivers[o.receiver]?;
-            Some(Sight { position, length: o.value, precision: o.precision })
+            Some(Sight { position, length: o.without_clock(&part.clocks), precision: o.precision })
         };
         sights.clear();
         sights.extend(observations.of_transmitter(j).iter().filter_map(sight));
@@ -117,7 +121,7 @@ fn locate_receivers<const D: usize>(
         check(monitor)?;
         let sight = |o: &Observation| {
             let (position, offset) = part.transmitters[o.transmitter]?;
-            Some(Sight { position, length: o.value - offset, precision: o.precision })
+            Some(Sight { position, length: o.without_clock(&part.clocks) - offset, precision: o.precision })
         };
         sights.clear();
         sights.extend(observations.of_receiver(i).filter_map(sight));

@@ -19,6 +19,7 @@ mod extend;
 mod gross_errors;
 mod heights;
 mod levels;
+mod leverage;
 mod motion;
 mod normal;
 mod predicted;

@@ -95,6 +95,11 @@ impl<const D: usize> Normal<D> {
         loss: &Loss,
     ) {
         self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
+        self.expect_clocks(observations, network, loss);
+    }
+
+    /// Adds what is expected of clocks to equations that were linearised with [`Normal::linearise_by`].
+    pub(super) fn expect_clocks(&mut self, observations: &Observations<D>, network: &Network<D>, loss: &Loss) {
         if let Some(prior) = observations.clocks().prior() {
             self.clocks.expect(prior, network, loss.prior_weight(prior.deviation()));
         }
@@ -163,6 +168,21 @@ impl<const D: usize> Normal<D> {
                     block.rows[pin.axis][pin.axis] += we * pin.precision;
                     placed.0[pin.axis] += we * e;
                 }
+            }
+        }
+    }
+
+    /// Adds a pull with this weight of all nodes to the origin to equations that were linearised with
+    /// [`Normal::linearise_by`].
+    pub(super) fn pull_together(&mut self, network: &Network<D>, weight: f64) {
+        let receivers = self.receiver_blocks.iter_mut().map(|(rows, gradient)| (rows, gradient));
+        let transmitters = self.transmitter_blocks.iter_mut().map(|(block, placed)| (&mut block.rows, &mut placed.0));
+        for ((rows, gradient), at) in
+            receivers.chain(transmitters).zip(network.receivers.iter().chain(&network.transmitters))
+        {
+            for k in 0..D {
+                rows[k][k] += weight;
+                gradient[k] -= weight * at[k];
             }
         }
     }

@@ -2,9 +2,9 @@
 
 use super::cancel::Cancelled;
 use super::descent::Descent;
+use super::leverage::Leverages;
 use super::normal::Normal;
 use super::reseed::reseed;
-use crate::clocks::ClockPrior;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -17,11 +17,20 @@ pub(crate) const SEARCH: RefineOptions = RefineOptions {
     scale: None,
     anneal_from: None,
     anneal_factor: 0.7,
+    by_leverage: false,
     floor: 0.0,
     steps: 15,
     rounds: 6,
     tolerance: 1e-5,
 };
+
+/// Steps with residuals of one variance, and the factor on the annealed scale from one to the next.
+const STEPS_BY_LEVERAGE: usize = 40;
+const FACTOR_BY_LEVERAGE: f64 = 0.91;
+
+/// What the distance of a node from the origin counts beside a residual of the same length, times the scale at which
+/// annealing begins.
+const PULL: f64 = 0.01;
 
 /// Share of the diagonal that stands for equations of rigid motions in determinants.
 const RIGID: f64 = 1e-9;
@@ -35,6 +44,8 @@ pub(crate) struct RefineOptions {
     pub(crate) anneal_from: Option<f64>,
     /// Factor on the annealed scale a step.
     pub(crate) anneal_factor: f64,
+    /// Whether residuals are compared by what leverage leaves of them while the scale is annealed.
+    pub(crate) by_leverage: bool,
     /// Smallest scale: measurements are never trusted beyond it.
     pub(crate) floor: f64,
     /// Most steps of one minimisation.
@@ -65,6 +76,7 @@ pub(crate) struct NetworkRefiner<'a, const D: usize = 2> {
     /// Redundancy: share of the measurements that is left over when the unknowns are determined.
     share: f64,
     descent: Descent<'a, D>,
+    leverages: Leverages<D>,
     monitor: Monitor,
 }
 
@@ -80,14 +92,21 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
             descent: Descent::new(observations),
+            leverages: Leverages::default(),
             monitor: monitor.clone(),
         }
     }
 
     /// The best network near `start`, which must be complete and finite.
     pub(crate) fn refine(&mut self, start: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
-        let mut best = self.minimise(start, options);
         let again = RefineOptions { anneal_from: None, ..*options };
+        let mut best = match options.anneal_from {
+            Some(from) if options.by_leverage => {
+                let network = self.descend(start, from, options);
+                self.minimise(network, &again)
+            }
+            _ => self.minimise(start, options),
+        };
         for _ in 0..options.rounds {
             if self.monitor.is_cancelled() {
                 break;
@@ -109,6 +128,41 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
         best
     }
 
+    /// Goes down from a network that may be far from the best one while the scale shrinks from this one on, by residuals of
+    /// one variance. That all nodes are pulled a little to where the network is keeps it from growing beyond all bounds where
+    /// clocks are wrong.
+    fn descend(&mut self, mut network: Network<D>, from: f64, options: &RefineOptions) -> Network<D> {
+        let NetworkRefiner { observations, ref monitor, ref mut descent, ref mut leverages, .. } = *self;
+        descent.begin(&mut network);
+        leverages.begin(observations);
+        let precisions: f64 = observations.all().iter().map(|o| o.precision * o.precision).sum();
+        let weight = Loss { nu: self.nu, scale: 1.0 }.weight(0.0);
+        let pull = weight * (PULL * precisions / (observations.len().max(1) as f64 * from)).powi(2);
+        let mut annealed = from;
+        for _ in 0..STEPS_BY_LEVERAGE {
+            let loss = Loss { nu: self.nu, scale: options.scale.unwrap_or(0.0).max(annealed).max(options.floor) };
+            let total = |residuals: &[f64], network: &Network<D>| {
+                let (cells, pins) = residuals.split_at(observations.len());
+                leverages.total(&loss, cells)
+                    + loss.total(pins.iter().copied())
+                    + 0.5 * pull * squares(network) / loss.scale.powi(2)
+                    + observations.clocks().unexpected(network, &loss)
+            };
+            let cost = total(&descent.residuals, &network);
+            let (terms, pin_terms) = (|k, e| (leverages.weight(&loss, k, e), e), |e| (loss.weight(e), e));
+            descent.normal.linearise_by(observations, &network, &descent.residuals, terms, pin_terms);
+            descent.normal.expect_clocks(observations, &network, &loss);
+            descent.normal.pull_together(&network, pull);
+            match descent.step_down(&mut network, cost, 1e-14, total, monitor) {
+                Err(_) => break,
+                Ok(None) => {}
+                Ok(Some(_)) => leverages.look(observations, &descent.normal),
+            }
+            annealed *= FACTOR_BY_LEVERAGE;
+        }
+        network
+    }
+
     fn minimise(&mut self, mut network: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
         let NetworkRefiner { observations, share, ref monitor, ref mut descent, .. } = *self;
         descent.begin(&mut network);
@@ -122,7 +176,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             }
         };
         let total = |loss: &Loss, residuals: &[f64], network: &Network<D>| {
-            loss.total(residuals.iter().copied()) + unexpected(observations, network, loss)
+            loss.total(residuals.iter().copied()) + observations.clocks().unexpected(network, loss)
         };
         let mut cost = total(&loss, &descent.residuals, &network);
         let mut calm = 0;
@@ -181,10 +235,9 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     }
 }
 
-/// What it costs, by this loss, that clocks are not as expected.
-fn unexpected<const D: usize>(observations: &Observations<D>, network: &Network<D>, loss: &Loss) -> f64 {
-    let of = |prior: &ClockPrior| loss.prior_weight(prior.deviation()) / loss.scale.powi(2) * prior.misfit(network);
-    observations.clocks().prior().map_or(0.0, of)
+/// Sum of the squares of all coordinates.
+fn squares<const D: usize>(network: &Network<D>) -> f64 {
+    network.receivers.iter().chain(&network.transmitters).flatten().map(|x| x * x).sum()
 }
 
 /// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 /

@@ -49,7 +49,7 @@ fn start<const D: usize, const E: usize>(
     let place = |name: &String| names.iter().position(|other| other == name);
     let of = |name: &String| receivers[place(name)?].map(&mut to);
     let receivers = measured.receiver_names().iter().map(of).collect();
-    PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }
+    PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()], clocks: Vec::new() }
 }
 
 /// A search of so many starts, all from sources that are given.

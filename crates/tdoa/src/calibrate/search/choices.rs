@@ -78,6 +78,7 @@ impl<const D: usize> Hypotheses<D> for RandomChoices<'_> {
         vec![PartialNetwork {
             receivers: network.receivers.iter().copied().map(Some).collect(),
             transmitters: located.map(|(&position, &offset)| Some((position, offset))).collect(),
+            clocks: network.clocks.clone(),
         }]
     }
 }

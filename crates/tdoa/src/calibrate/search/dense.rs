@@ -47,9 +47,11 @@ fn search<const D: usize>(state: &mut State<'_, D>, sources: &[&dyn Hypotheses<D
     // size.
     let unit = typical_deviation(&state.measured);
     state.floor = RESOLUTION * diameter / unit;
+    let has_clocks = small.unknown_clocks().is_some();
     let refine = RefineOptions {
         scale: known.map(|sigma| sigma / to_deviation),
         anneal_from: Some(0.1 * diameter / unit),
+        by_leverage: has_clocks,
         floor: state.floor,
         ..SEARCH
     };
@@ -57,7 +59,8 @@ fn search<const D: usize>(state: &mut State<'_, D>, sources: &[&dyn Hypotheses<D
     let minimal = MinimalHypotheses::at_most(options.search.minimal_subsets).heeding(monitor);
     if options.search.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if options.search.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(&small) {
+        // Receivers of the smallest networks share a clock.
+        if options.search.minimal_subsets > 0 && !has_clocks && MinimalHypotheses::fit::<D>(&small) {
             all.push(&minimal);
         }
     }
@@ -154,6 +157,7 @@ pub(crate) fn complete<const D: usize>(
     for refined in networks {
         let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
         known.place(&refined.network, &part.receivers, &part.transmitters);
+        known.clocks = observations.clocks().of_all(&refined.network.clocks, &part.receivers);
         let loss = Loss { nu: SEARCH_NU, scale: refined.scale };
         let Some(network) = extend(observations, &known, &loss, monitor)? else { continue };
         let next = RefinedNetwork { starts: refined.starts, ..refiner.refine(network, &refine) };

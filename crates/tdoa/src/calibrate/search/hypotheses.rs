@@ -31,7 +31,7 @@ impl<const D: usize> Hypotheses<D> for KnownReceivers<D> {
         let find =
             |name: &String| self.positions.iter().find(|(other, _)| other == name).map(|(_, position)| *position);
         let receivers = measured.receiver_names().iter().map(find).collect();
-        vec![PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }]
+        vec![PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()], clocks: Vec::new() }]
     }
 }
 
@@ -67,6 +67,7 @@ impl<const D: usize> Hypotheses<D> for RandomRestarts<'_, D> {
         vec![PartialNetwork {
             receivers: network.receivers.iter().copied().map(Some).collect(),
             transmitters: located.map(|(&position, &offset)| Some((position, offset))).collect(),
+            clocks: network.clocks.clone(),
         }]
     }
 }

@@ -31,7 +31,7 @@ pub(crate) fn part_of<const D: usize>(network: &Network<D>, index: usize, seed: 
     let receivers = network.receivers.iter().map(|&r| (random.random::<f64>() < left).then_some(r)).collect();
     let located = network.transmitters.iter().copied().zip(network.offsets.iter().copied());
     let transmitters = located.map(|s| (with_transmitters && random.random::<f64>() < left).then_some(s)).collect();
-    PartialNetwork { receivers, transmitters }
+    PartialNetwork { receivers, transmitters, clocks: network.clocks.clone() }
 }
 
 /// The network of least objective.

@@ -17,6 +17,7 @@ const ADJUSTMENT: RefineOptions = RefineOptions {
     scale: Some(1.0),
     anneal_from: None,
     anneal_factor: 0.5,
+    by_leverage: false,
     floor: 0.0,
     steps: 60,
     rounds: 0,

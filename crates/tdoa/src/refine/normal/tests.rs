@@ -4,6 +4,7 @@ use super::*;
 use crate::clocks::Emissions;
 use crate::clocks::tests::{Model, models};
 use crate::network::tests::random;
+use crate::observations::Pin;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::NetworkRefiner;
 
@@ -61,11 +62,14 @@ fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
 }
 
 /// Equations of a network with clocks, linearised, and solved with this damping.
-fn solved<const D: usize>(observations: &Observations<D>, network: &Network<D>) -> Normal<D> {
+fn solved<const D: usize>(observations: &Observations<D>, network: &Network<D>, pull: Option<f64>) -> Normal<D> {
     let mut normal = Normal::new(observations);
     let mut all = vec![0.0; observations.len() + observations.pins().len()];
     crate::refine::residuals(observations, network, &mut all);
     normal.linearise_by(observations, network, &all, |_, e| (1.0, e), |e| (1.0, e));
+    if let Some(pull) = pull {
+        normal.pull_together(network, pull);
+    }
     assert!(normal.solve(observations, 1e-3, &Monitor::default()).unwrap());
     normal
 }
@@ -79,7 +83,7 @@ fn moved<const D: usize>(model: Model) -> (Network<D>, Observations<D>) {
 
 fn steps_begin_at_the_network<const D: usize>(model: Model) {
     let (network, observations) = moved::<D>(model);
-    let normal = solved(&observations, &network);
+    let normal = solved(&observations, &network, None);
     let (mut target, mut other) = (network.clone(), network.clone());
     other.clocks.iter_mut().flatten().for_each(|clock| *clock += 7.0);
     other.receivers[0][0] += 7.0;
@@ -89,10 +93,29 @@ fn steps_begin_at_the_network<const D: usize>(model: Model) {
     assert!(target != network && target == other, "{model:?}");
 }
 
+fn a_pull_is_that_of_pins<const D: usize>(model: Model) {
+    let (network, observations) = moved::<D>(model);
+    let pins: Vec<Pin> = (0..10)
+        .map(Node::Receiver)
+        .chain((0..12).map(Node::Transmitter))
+        .flat_map(|node| (0..D).map(move |axis| Pin { node, axis, value: 0.0, precision: 0.3 }))
+        .collect();
+    let pinned = observations.clone().pinned(&pins);
+    let (mut pulled, mut expected) = (network.clone(), network.clone());
+    solved(&observations, &network, Some(0.09)).step(&observations, &network, &mut pulled);
+    solved(&pinned, &network, None).step(&pinned, &network, &mut expected);
+    let nodes = |network: &Network<D>| [network.receivers.clone(), network.transmitters.clone()].concat();
+    for (a, b) in nodes(&pulled).into_iter().zip(nodes(&expected)) {
+        assert!((0..D).all(|k| (a[k] - b[k]).abs() < 1e-9), "{model:?}: {a:?} {b:?}");
+    }
+}
+
 #[test]
 fn a_step_depends_on_the_network_that_it_begins_at_alone() {
     for model in models() {
         steps_begin_at_the_network::<2>(model);
         steps_begin_at_the_network::<3>(model);
+        a_pull_is_that_of_pins::<2>(model);
+        a_pull_is_that_of_pins::<3>(model);
     }
 }
