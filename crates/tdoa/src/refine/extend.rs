@@ -9,7 +9,7 @@ use crate::network::Network;
 use crate::observations::{Observation, Observations};
 use hc::Monitor;
 
-/// A network in which some nodes are known.
+/// A network in which some nodes are known; begins as [`PartialNetwork::unknown`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartialNetwork<const D: usize = 2> {
     /// Positions of receivers, metres.
@@ -18,7 +18,7 @@ pub struct PartialNetwork<const D: usize = 2> {
     pub transmitters: Vec<Option<([f64; D], f64)>>,
     /// Per receiver, what its clock adds to measurements, metres: an offset, and a drift over half the recording. Empty where
     /// nothing is known of clocks.
-    pub clocks: Vec<[f64; 2]>,
+    pub(crate) clocks: Vec<[f64; 2]>,
 }
 
 impl<const D: usize> PartialNetwork<D> {

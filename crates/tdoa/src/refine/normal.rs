@@ -172,9 +172,9 @@ impl<const D: usize> Normal<D> {
         }
     }
 
-    /// Adds a pull with this weight of all nodes to the origin to equations that were linearised with
+    /// Adds a pull with this weight of all nodes to a point to equations that were linearised with
     /// [`Normal::linearise_by`].
-    pub(super) fn pull_together(&mut self, network: &Network<D>, weight: f64) {
+    pub(super) fn pull_together(&mut self, network: &Network<D>, to: [f64; D], weight: f64) {
         let receivers = self.receiver_blocks.iter_mut().map(|(rows, gradient)| (rows, gradient));
         let transmitters = self.transmitter_blocks.iter_mut().map(|(block, placed)| (&mut block.rows, &mut placed.0));
         for ((rows, gradient), at) in
@@ -182,7 +182,7 @@ impl<const D: usize> Normal<D> {
         {
             for k in 0..D {
                 rows[k][k] += weight;
-                gradient[k] -= weight * at[k];
+                gradient[k] += weight * (to[k] - at[k]);
             }
         }
     }

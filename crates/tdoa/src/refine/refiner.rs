@@ -8,6 +8,7 @@ use super::reseed::reseed;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points::{centroid, dot, minus};
 use hc::Monitor;
 
 /// Steps, rounds and tolerance of a search start. Chosen on nearly planar field recordings (6 x 46,
@@ -28,7 +29,7 @@ pub(crate) const SEARCH: RefineOptions = RefineOptions {
 const STEPS_BY_LEVERAGE: usize = 40;
 const FACTOR_BY_LEVERAGE: f64 = 0.91;
 
-/// What the distance of a node from the origin counts beside a residual of the same length, times the scale at which
+/// What the distance of a node from the middle counts beside a residual of the same length, times the scale at which
 /// annealing begins.
 const PULL: f64 = 0.01;
 
@@ -129,8 +130,8 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     }
 
     /// Goes down from a network that may be far from the best one while the scale shrinks from this one on, by residuals of
-    /// one variance. That all nodes are pulled a little to where the network is keeps it from growing beyond all bounds where
-    /// clocks are wrong.
+    /// one variance. That all nodes are pulled a little to the middle of the receivers, where these are at first, keeps
+    /// networks with wrong clocks from growing beyond all bounds.
     fn descend(&mut self, mut network: Network<D>, from: f64, options: &RefineOptions) -> Network<D> {
         let NetworkRefiner { observations, ref monitor, ref mut descent, ref mut leverages, .. } = *self;
         descent.begin(&mut network);
@@ -138,6 +139,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
         let precisions: f64 = observations.all().iter().map(|o| o.precision * o.precision).sum();
         let weight = Loss { nu: self.nu, scale: 1.0 }.weight(0.0);
         let pull = weight * (PULL * precisions / (observations.len().max(1) as f64 * from)).powi(2);
+        let centre = centroid(network.receivers.iter());
         let mut annealed = from;
         for _ in 0..STEPS_BY_LEVERAGE {
             let loss = Loss { nu: self.nu, scale: options.scale.unwrap_or(0.0).max(annealed).max(options.floor) };
@@ -145,14 +147,14 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 let (cells, pins) = residuals.split_at(observations.len());
                 leverages.total(&loss, cells)
                     + loss.total(pins.iter().copied())
-                    + 0.5 * pull * squares(network) / loss.scale.powi(2)
+                    + 0.5 * pull * squares(network, centre) / loss.scale.powi(2)
                     + observations.clocks().unexpected(network, &loss)
             };
             let cost = total(&descent.residuals, &network);
             let (terms, pin_terms) = (|k, e| (leverages.weight(&loss, k, e), e), |e| (loss.weight(e), e));
             descent.normal.linearise_by(observations, &network, &descent.residuals, terms, pin_terms);
             descent.normal.expect_clocks(observations, &network, &loss);
-            descent.normal.pull_together(&network, pull);
+            descent.normal.pull_together(&network, centre, pull);
             match descent.step_down(&mut network, cost, 1e-14, total, monitor) {
                 Err(_) => break,
                 Ok(None) => {}
@@ -235,9 +237,9 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     }
 }
 
-/// Sum of the squares of all coordinates.
-fn squares<const D: usize>(network: &Network<D>) -> f64 {
-    network.receivers.iter().chain(&network.transmitters).flatten().map(|x| x * x).sum()
+/// Sum of the squares of the distances of all nodes from a point.
+fn squares<const D: usize>(network: &Network<D>, from: [f64; D]) -> f64 {
+    network.receivers.iter().chain(&network.transmitters).map(|p| dot(minus(*p, from), minus(*p, from))).sum()
 }
 
 /// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 /

@@ -81,9 +81,12 @@ fn add(clocks: &mut [[f64; 2]], others: &[[f64; 2]], factor: f64) {
 mod tests {
     use crate::accuracy::cramer_rao_with_clocks;
     use crate::align::align;
-    use crate::calibrate::{Calibrates, Dimension};
+    use crate::calibrate::{Calibrates, Dimension, KnownReceivers};
     use crate::summary::clock_model;
-    use crate::{CalibrateError, CalibrateOptions, Emissions, ReceiverClocks, SimulateOptions, calibrate, simulate};
+    use crate::{
+        CalibrateError, CalibrateOptions, Emissions, Monitor, ReceiverClocks, SimulateOptions, calibrate,
+        calibrate_with, simulate,
+    };
 
     /// Networks are as near to the truth as measurements with these unknowns tell.
     fn are_at_the_bound<const D: usize>(emissions: Emissions, receivers: ReceiverClocks, channels: usize)
@@ -169,6 +172,51 @@ mod tests {
         for receivers in [ReceiverClocks::Offset, ReceiverClocks::Rate] {
             all_are_found::<2>(receivers);
             all_are_found::<3>(receivers);
+        }
+    }
+
+    /// Every other start estimates the deviation first, so that more than half agree only if both kinds do.
+    fn a_given_deviation_is_kept<const D: usize>()
+    where
+        Dimension<D>: Calibrates<D>,
+    {
+        for seed in 0..3 {
+            let mut made = SimulateOptions::<D>::new();
+            (made.receivers, made.transmitters, made.noise, made.seed, made.delays) = (10, 20, 0.01, seed, 1e3);
+            let made = simulate(&made).unwrap();
+            let mut options = CalibrateOptions::<D> { sigma: Some(0.01), seed, ..CalibrateOptions::new() };
+            options.clocks.receivers = ReceiverClocks::Offset;
+            let found = calibrate(&made.pseudoranges, &options).unwrap();
+            assert!(2 * found.agreeing > found.starts, "{D} {seed}: {} of {}", found.agreeing, found.starts);
+        }
+    }
+
+    #[test]
+    fn starts_agree_where_the_deviation_is_given() {
+        a_given_deviation_is_kept::<2>();
+        a_given_deviation_is_kept::<3>();
+    }
+
+    /// Positions in the coordinates of a country lead where those near the origin do.
+    #[test]
+    fn known_positions_may_be_far_from_the_origin() {
+        let mut made = SimulateOptions::<2>::new();
+        (made.receivers, made.transmitters, made.noise, made.seed, made.delays) = (10, 20, 0.01, 1, 1e3);
+        let made = simulate(&made).unwrap();
+        let mut options = CalibrateOptions::default();
+        options.clocks.receivers = ReceiverClocks::Offset;
+        options.search.restarts = false;
+        (options.search.min_starts, options.search.max_starts) = (1, 1);
+        for origin in [[0.0, 0.0], [4e5, 5e6]] {
+            let place = |(i, at): (usize, &[f64; 2])| (format!("r{}", i + 1), [at[0] + origin[0], at[1] + origin[1]]);
+            let positions = made.network.receivers.iter().enumerate().map(place).collect();
+            let known = KnownReceivers { positions };
+            let found = calibrate_with(&made.pseudoranges, &options, &[&known], &Monitor::default()).unwrap();
+            let places: Vec<[f64; 2]> = found.receivers.iter().flatten().copied().collect();
+            let apart = align(&places, &made.network.receivers, false).unwrap().rms;
+            let bound =
+                cramer_rao_with_clocks(&made.pseudoranges, &made.outliers, &made.network, 0.01, &options.clocks);
+            assert!(apart < 3.0 * bound, "{origin:?}: {apart} {bound}");
         }
     }
 

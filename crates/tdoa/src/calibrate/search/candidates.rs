@@ -130,7 +130,11 @@ fn choose_among_all<const D: usize>(
     let starts: usize = alike.map(|(_, other)| other.starts).sum();
     let rivals = settled.iter().filter(|(_, other)| other.objective <= best.objective + options.alternative_margin);
     let mut rivals = rivals.map(|(_, other)| other);
-    state.doubts_choice = if rivals.any(|other| !same(&other.network, &best.network)) {
+    state.doubts_choice = if state.measured.unknown_clocks().is_some() {
+        Some(
+            "clocks of recorders are unknown besides, and one whose late candidates are chosen seems to be late itself",
+        )
+    } else if rivals.any(|other| !same(&other.network, &best.network)) {
         Some("another choice among the candidates fits another network about as well")
     } else if starts < SETTLED.min(options.search.agreeing).min(options.search.max_starts) {
         Some(

@@ -217,7 +217,8 @@ impl<const D: usize> Search<'_, D> {
             return refiner.refine(network, &self.refine);
         }
         let free = refiner.refine(network, &RefineOptions { scale: None, ..self.refine });
-        refiner.refine(free.network, &RefineOptions { anneal_from: Some(free.scale), ..self.refine })
+        let near = RefineOptions { anneal_from: Some(free.scale), by_leverage: false, ..self.refine };
+        refiner.refine(free.network, &near)
     }
 
     /// Replaces the objective by the truncated cost where the noise is known.

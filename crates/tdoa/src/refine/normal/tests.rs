@@ -68,7 +68,7 @@ fn solved<const D: usize>(observations: &Observations<D>, network: &Network<D>, 
     crate::refine::residuals(observations, network, &mut all);
     normal.linearise_by(observations, network, &all, |_, e| (1.0, e), |e| (1.0, e));
     if let Some(pull) = pull {
-        normal.pull_together(network, pull);
+        normal.pull_together(network, [0.2; D], pull);
     }
     assert!(normal.solve(observations, 1e-3, &Monitor::default()).unwrap());
     normal
@@ -98,7 +98,7 @@ fn a_pull_is_that_of_pins<const D: usize>(model: Model) {
     let pins: Vec<Pin> = (0..10)
         .map(Node::Receiver)
         .chain((0..12).map(Node::Transmitter))
-        .flat_map(|node| (0..D).map(move |axis| Pin { node, axis, value: 0.0, precision: 0.3 }))
+        .flat_map(|node| (0..D).map(move |axis| Pin { node, axis, value: 0.2, precision: 0.3 }))
         .collect();
     let pinned = observations.clone().pinned(&pins);
     let (mut pulled, mut expected) = (network.clone(), network.clone());
