@@ -5,7 +5,6 @@ use crate::calibrate::input::impossible::without_impossible;
 use crate::calibrate::input::ranges::with_clocks;
 use crate::calibrate::input::selection::Input;
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, check};
-use crate::calibrate::receivers::own_clocks::search_with_clocks;
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::candidates::search_candidates;
 use crate::calibrate::search::hypotheses::Hypotheses;
@@ -100,14 +99,13 @@ impl<'a, const D: usize> Draft<'a, D> {
 
     fn search(&mut self, sources: &[&dyn Hypotheses<D>]) -> Result<(), CalibrateError<D>> {
         let Draft { state, input } = self;
-        if state.measured.unknown_clocks().is_some() {
-            search_with_clocks(state, sources)?;
-        } else if let Some((layout, places)) = local_layout(input, state, sources)? {
+        if let Some((layout, places)) = local_layout(input, state, sources)? {
             layout.refine(state, &places)?;
             state.settle_candidates()?;
         } else {
             search_candidates(state, sources)?;
         }
+        state.take_off_clocks();
         let best = &state.ranked[0];
         state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
         Ok(())
@@ -150,7 +148,7 @@ fn local_layout<const D: usize>(
     };
     *so_far = Some(layout.unfinished(centred));
     layout.place_strays(centred, monitor)?;
-    let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.positions[i].is_some()).collect();
+    let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.receivers[i].is_some()).collect();
     let heard =
         |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= least_per_transmitter::<D>();
     let columns: Vec<usize> = (0..centred.transmitters()).filter(heard).collect();

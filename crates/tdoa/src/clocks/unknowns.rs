@@ -74,6 +74,16 @@ impl ClockUnknowns {
         self.recorders.iter().map(of).collect()
     }
 
+    /// Clocks of all receivers against those of the recorder that is the reference, as far as it is one.
+    pub(crate) fn against_the_first(&self, mut clocks: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        for k in 0..2 {
+            let first = self.recorders.iter().position(|unknowns| unknowns[k].is_none());
+            let first = first.and_then(|i| clocks.get(i)).map_or(0.0, |clock| clock[k]);
+            clocks.iter_mut().for_each(|clock| clock[k] -= first);
+        }
+        clocks
+    }
+
     /// Adds a share of changes of these unknowns to those of a network.
     pub(crate) fn add<const D: usize>(&self, network: &mut Network<D>, changes: &[f64], share: f64) {
         if let Some(constant) = self.constant {

@@ -1,10 +1,7 @@
-//! Clocks of recorders: a search of networks with them, and what they are in the result.
+//! Clocks of recorders beside a network that was found, and in the result.
 
 use crate::calibrate::input::selection::{Input, synchronised};
-use crate::calibrate::options::CalibrateError;
 use crate::calibrate::report::clocks::RecorderClock;
-use crate::calibrate::search::candidates::search_candidates;
-use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::state::State;
 use crate::clocks::ReceiverClocks;
 use crate::observations::Observations;
@@ -13,22 +10,20 @@ use crate::refine::Covariance;
 /// Name of the clock that all receivers share.
 const ALL_RECEIVERS: &str = "all receivers";
 
-/// Searches networks together with the clocks of the recorders, and takes the best one's off the measurements.
-pub(crate) fn search_with_clocks<const D: usize>(
-    state: &mut State<'_, D>,
-    sources: &[&dyn Hypotheses<D>],
-) -> Result<(), CalibrateError<D>> {
-    search_candidates(state, sources)?;
-    let clocks = state.ranked[0].network.clocks.clone();
-    state.measured = synchronised(state.measured.clone(), &clocks);
-    state.observations = Observations::new(&state.measured, |_, _| true);
-    for refined in &mut state.ranked {
-        add(&mut refined.network.clocks, &clocks, -1.0);
-    }
-    Ok(())
-}
-
 impl<const D: usize> State<'_, D> {
+    /// Takes the clocks of the best network off the measurements.
+    pub(crate) fn take_off_clocks(&mut self) {
+        if self.measured.unknown_clocks().is_none() {
+            return;
+        }
+        let clocks = self.ranked[0].network.clocks.clone();
+        self.measured = synchronised(self.measured.clone(), &clocks);
+        self.observations = Observations::new(&self.measured, |_, _| true);
+        for refined in &mut self.ranked {
+            add(&mut refined.network.clocks, &clocks, -1.0);
+        }
+    }
+
     /// The clocks of the recorders of the best network, in their order; none where receivers share a clock.
     pub(crate) fn recorder_clocks(&self, input: &Input<'_>, uncertainty: &Covariance<D>) -> Vec<RecorderClock> {
         let (Some(recorders), best) = (self.measured.unknown_clocks(), &self.ranked[0].network) else {

@@ -31,6 +31,10 @@ const NETWORKS: usize = 12;
 /// differ by. It cannot be estimated, as half of the candidates or more are wrong.
 const SCALE: f64 = 3e-3;
 
+/// What speaks against a choice where clocks are unknown.
+const CLOCKS: &str =
+    "clocks of recorders are unknown besides, and one whose late candidates are chosen seems to be late itself";
+
 /// Searches networks for the measurements of a state, which has none yet, and chooses among their candidates.
 pub(crate) fn search_candidates<const D: usize>(
     state: &mut State<'_, D>,
@@ -66,6 +70,7 @@ impl<const D: usize> State<'_, D> {
         if !self.measured.has_candidates() {
             return Ok(());
         }
+        self.doubts_choice = self.measured.unknown_clocks().map(|_| CLOCKS);
         let (chosen, refined) = settle(self, self.ranked[0].network.clone())?;
         if self.measured.chooses_otherwise(&chosen) {
             self.take_choice(chosen);
@@ -131,9 +136,7 @@ fn choose_among_all<const D: usize>(
     let rivals = settled.iter().filter(|(_, other)| other.objective <= best.objective + options.alternative_margin);
     let mut rivals = rivals.map(|(_, other)| other);
     state.doubts_choice = if state.measured.unknown_clocks().is_some() {
-        Some(
-            "clocks of recorders are unknown besides, and one whose late candidates are chosen seems to be late itself",
-        )
+        Some(CLOCKS)
     } else if rivals.any(|other| !same(&other.network, &best.network)) {
         Some("another choice among the candidates fits another network about as well")
     } else if starts < SETTLED.min(options.search.agreeing).min(options.search.max_starts) {

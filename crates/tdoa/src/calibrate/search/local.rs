@@ -5,14 +5,12 @@ use crate::calibrate::options::{CalibrateError, CalibrateOptions, SearchOptions,
 use crate::calibrate::search::candidates::search_candidates;
 use crate::calibrate::search::deviation::{median_size, typical_deviation};
 use crate::calibrate::search::hypotheses::Hypotheses;
-use crate::calibrate::search::submaps::{FIT, Submap, fit, largest, overlap};
+use crate::calibrate::search::submaps::{FIT, PlacedReceiver, Submap, fit, largest, overlap};
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
-use crate::clocks::Emissions;
+use crate::clocks::Recorders;
 use crate::degeneracy::usable;
-use crate::flatness::flatness;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
-use crate::multilateration::{self, Sight};
 use crate::network::Network;
 use crate::points::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
@@ -30,7 +28,7 @@ const MOST_STARTS: usize = 128;
 const AGREEING: usize = 5;
 
 /// Receivers that must hear a transmitter of a submap: two more than locate it, or nearly so.
-const fn heard_by<const D: usize>() -> usize {
+pub(crate) const fn heard_by<const D: usize>() -> usize {
     D + 3
 }
 
@@ -41,13 +39,13 @@ const LOCAL: f64 = 0.2;
 
 /// What the submaps say of the receivers: those that hang together.
 pub(crate) struct ReceiverLayout<const D: usize> {
-    submaps: Vec<Submap<D>>,
-    /// Positions in one frame; `None` where no submap ties a receiver to the others.
-    pub(crate) positions: Vec<Option<[f64; D]>>,
+    pub(crate) submaps: Vec<Submap<D>>,
+    /// In one frame, with clocks against one of them; `None` where no submap ties a receiver to the others.
+    pub(crate) receivers: Vec<Option<PlacedReceiver<D>>>,
     /// How many submaps were solved.
     pub(crate) solved: usize,
     /// Size of the largest submap, metres.
-    size: f64,
+    pub(crate) size: f64,
 }
 
 /// Whether so many pairs of receivers hear no transmitter in common that no small part stands for
@@ -95,9 +93,9 @@ pub(crate) fn lay_out<const D: usize>(
         solved?;
         return Err(CalibrateError::NotFound(m));
     }
-    let positions = largest(&submaps, m);
+    let receivers = largest(&submaps, m);
     let size = submaps.iter().map(|submap| submap.size).fold(0.0, f64::max);
-    let layout = ReceiverLayout { solved: submaps.len(), submaps, positions, size };
+    let layout = ReceiverLayout { solved: submaps.len(), submaps, receivers, size };
     *so_far = Some(layout.unfinished(measured));
     solved.map(|()| layout)
 }
@@ -172,8 +170,17 @@ fn solve<const D: usize>(
     Ok(Some(Submap {
         receivers: kept.receivers.iter().map(|&i| receivers[i]).collect(),
         positions: best.network.receivers.clone(),
+        clocks: clocks_of(&found.measured, &best.network),
         size: best.network.size(),
     }))
+}
+
+/// The clocks of the receivers of a network with all that was taken off its measurements; zero where they share one.
+fn clocks_of<const D: usize>(measured: &Pseudoranges, network: &Network<D>) -> Vec<[f64; 2]> {
+    let taken = measured.unknown_clocks().map_or(&[][..], Recorders::taken);
+    let of = |clocks: &[[f64; 2]], i: usize| clocks.get(i).copied().unwrap_or_default();
+    let both = |i| [0, 1].map(|k| of(taken, i)[k] + of(&network.clocks, i)[k]);
+    (0..measured.receivers()).map(both).collect()
 }
 
 impl<const D: usize> ReceiverLayout<D> {
@@ -183,40 +190,66 @@ impl<const D: usize> ReceiverLayout<D> {
         source: &dyn Hypotheses<D>,
         seed: u64,
     ) -> Option<ReceiverLayout<D>> {
+        if measured.unknown_clocks().is_some() {
+            // Positions tell nothing of clocks.
+            return None;
+        }
         let positions = source.propose(measured, 0, seed).into_iter().next()?.receivers;
-        let placed: Vec<[f64; D]> = positions.iter().copied().collect::<Option<_>>()?;
+        let positions: Vec<[f64; D]> = positions.into_iter().collect::<Option<_>>()?;
         // As much as ten neighbours would take of it.
-        let share = (RECEIVERS as f64 / placed.len() as f64).sqrt();
-        Some(ReceiverLayout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
+        let size = (RECEIVERS as f64 / positions.len() as f64).sqrt() * spread(positions.iter());
+        let placed = |position| Some(PlacedReceiver { position, clock: [0.0; 2] });
+        let receivers = positions.into_iter().map(placed).collect();
+        Some(ReceiverLayout { submaps: Vec::new(), receivers, solved: 1, size })
     }
 
     /// The receivers alone.
     pub(crate) fn unfinished(&self, measured: &Pseudoranges) -> Unfinished<D> {
-        Unfinished::laid(self.positions.clone(), measured.transmitters(), self.solved)
+        let positions = (0..self.receivers.len()).map(|i| self.position(i)).collect();
+        Unfinished::laid(positions, measured.transmitters(), self.solved)
+    }
+
+    pub(crate) fn position(&self, receiver: usize) -> Option<[f64; D]> {
+        self.receivers[receiver].map(|placed| placed.position)
     }
 
     /// How many submaps fit a network of these receivers, and the places of receivers among them that
     /// are in none of these, or only in such as share too few receivers with others.
     fn support(&self, network: &Network<D>, receivers: &[usize]) -> (usize, Vec<usize>) {
-        let mut placed = vec![None; self.positions.len()];
+        let mut placed = vec![None; self.receivers.len()];
         for (&i, &p) in receivers.iter().zip(&network.receivers) {
             placed[i] = Some(p);
         }
         let mut fitting: Vec<Vec<usize>> = Vec::new();
         for submap in &self.submaps {
-            let Some((_, map)) = fit(submap, &placed) else { continue };
+            let Some((_, map)) = fit(submap, |i| placed[i]) else { continue };
             let near = |(&i, &p): (&usize, &[f64; D])| {
                 let limit = 3.0 * FIT * submap.size;
                 placed[i].is_some_and(|q| distance(map.apply(p), q) <= limit).then_some(i)
             };
             fitting.push(submap.receivers.iter().zip(&submap.positions).filter_map(near).collect());
         }
-        let mut counts = vec![0; self.positions.len()];
+        let mut counts = vec![0; self.receivers.len()];
         fitting.iter().flatten().for_each(|&i| counts[i] += 1);
         let overlaps = |submap: &&Vec<usize>| submap.iter().filter(|&&i| counts[i] > 1).count() >= overlap::<D>();
         let sure: Vec<&Vec<usize>> = fitting.iter().filter(overlaps).collect();
         let weak = (0..receivers.len()).filter(|&k| !sure.iter().any(|submap| submap.contains(&receivers[k])));
         (fitting.len(), weak.collect())
+    }
+
+    /// The clocks of these receivers beside what was taken off their measurements, as far as a receiver of the same
+    /// recorder is placed; empty where all share one.
+    pub(crate) fn clocks(&self, measured: &Pseudoranges, receivers: &[usize]) -> Vec<Option<[f64; 2]>> {
+        let Some(recorders) = measured.unknown_clocks() else { return Vec::new() };
+        let of_recorder = |recorder: usize| {
+            let mut all = recorders.of_receivers().iter().zip(receivers).filter(move |(of, _)| **of == recorder);
+            all.find_map(|(_, &i)| self.receivers[i]).map(|placed| placed.clock)
+        };
+        let both = recorders.of_receivers().iter().zip(recorders.taken());
+        let beside = |(recorder, taken): (&usize, &[f64; 2])| {
+            of_recorder(*recorder).map(|clock| [clock[0] - taken[0], clock[1] - taken[1]])
+        };
+        both.map(beside).collect()
     }
 
     /// Gives a state that has no network that of the placed receivers, refined as one. The state has these
@@ -229,7 +262,9 @@ impl<const D: usize> ReceiverLayout<D> {
         let unit = typical_deviation(measured);
         let size = self.size / unit;
         let mut part = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
-        part.receivers = receivers.iter().map(|&i| self.positions[i]).collect();
+        part.receivers = receivers.iter().map(|&i| self.position(i)).collect();
+        let clocks: Option<Vec<[f64; 2]>> = self.clocks(measured, receivers).into_iter().collect();
+        part.clocks = observations.clocks().against_the_first(clocks.unwrap_or_default());
         let wide = Loss { nu: SEARCH_NU, scale: FIT * size };
         *so_far = Some(Unfinished::laid(part.receivers.clone(), measured.transmitters(), self.solved));
         let network = extend(observations, &part, &wide, monitor)?.ok_or(CalibrateError::NotFound(self.solved))?;
@@ -249,58 +284,17 @@ impl<const D: usize> ReceiverLayout<D> {
         state.ranked = vec![refined];
         state.finish(first)
     }
-
-    /// Places receivers that no submap has from transmitters that five placed receivers or more
-    /// have located.
-    ///
-    /// # Errors
-    /// Cancelled; no further receiver is then placed.
-    pub(crate) fn place_strays(&mut self, measured: &Pseudoranges, monitor: &Monitor) -> Result<(), CalibrateError<D>> {
-        let size = self.size / typical_deviation(measured);
-        let loss = Loss { nu: SEARCH_NU, scale: FIT * size };
-        let precision = |i: usize, j: usize| measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
-        let located: Vec<Option<multilateration::Located<D>>> = (0..measured.transmitters())
-            .map(|j| {
-                check(monitor)?;
-                let sight = |i: usize| {
-                    Some(Sight {
-                        position: self.positions[i]?,
-                        length: measured.get(i, j)?,
-                        precision: precision(i, j),
-                    })
-                };
-                let sights: Vec<Sight<D>> = (0..measured.receivers()).filter_map(sight).collect();
-                let locate = if measured.emissions() == Emissions::Known {
-                    multilateration::receiver
-                } else {
-                    multilateration::transmitter
-                };
-                Ok((sights.len() >= heard_by::<D>()).then(|| locate(&sights, &loss)).flatten())
-            })
-            .collect::<Result<_, CalibrateError<D>>>()?;
-        for i in 0..measured.receivers() {
-            if self.positions[i].is_some() {
-                continue;
-            }
-            let sight = |(j, found): (usize, &Option<multilateration::Located<D>>)| {
-                let found = found.as_ref()?;
-                let length = measured.get(i, j)? - found.offset;
-                Some(Sight { position: found.position, length, precision: precision(i, j) })
-            };
-            let sights: Vec<Sight<D>> = located.iter().enumerate().filter_map(sight).collect();
-            let around: Vec<[f64; D]> = sights.iter().map(|s| s.position).collect();
-            if sights.len() >= 2 * overlap::<D>() && flatness(&around) > 0.05 {
-                self.positions[i] = multilateration::receiver(&sights, &loss).map(|found| found.position);
-            }
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::accuracy::cramer_rao_with_clocks;
     use crate::align::align;
-    use crate::{CalibrateOptions, Layout, Pseudoranges, SimulateOptions, Simulation, calibrate, points, simulate};
+    use crate::calibrate::{Calibrates, Dimension};
+    use crate::{
+        CalibrateOptions, Layout, Pseudoranges, ReceiverClocks, SimulateOptions, Simulation, calibrate, points,
+        simulate,
+    };
 
     fn chain(seed: u64) -> Simulation {
         let layout = Layout::Chain { extent: [400.0, 50.0] };
@@ -346,6 +340,47 @@ mod tests {
             found.receiver_std.iter().map(|std| std.map_or(f64::NAN, |std| points::dot(std, std))).sum();
         let expected = (variance / 20.0).sqrt();
         assert!(error < 3.0 * expected && expected < 5.0, "{error} {expected}");
+    }
+
+    /// A network with recorders that were started apart is as near to the truth as its measurements tell.
+    fn is_laid_at_the_bound<const D: usize>(made: SimulateOptions<D>, clocks: ReceiverClocks)
+    where
+        Dimension<D>: Calibrates<D>,
+    {
+        let made = simulate(&made).unwrap();
+        let mut options = CalibrateOptions::<D>::new();
+        options.clocks.receivers = clocks;
+        let found = calibrate(&made.pseudoranges, &options).unwrap();
+        assert!(found.laid_together && found.unique, "{:?}", found.warnings);
+        let receivers: Vec<[f64; D]> = found.receivers.iter().map(|p| p.unwrap()).collect();
+        let error = align(&receivers, &made.network.receivers, false).unwrap().rms;
+        let bound = cramer_rao_with_clocks(&made.pseudoranges, &made.outliers, &made.network, 0.01, &options.clocks);
+        assert!(error < 3.0 * bound, "{D} {clocks:?}: {error} {bound}");
+    }
+
+    #[test]
+    fn clocks_of_recorders_are_laid_together_too() {
+        let clocked = |layout| SimulateOptions::<2> {
+            receivers: 20,
+            transmitters: 120,
+            hearing: Some(8),
+            noise: 0.01,
+            outliers: 0.02,
+            delays: 1e3,
+            layout,
+            ..Default::default()
+        };
+        let mut field = clocked(Layout::Room { extent: [10.0; 2] });
+        (field.receivers, field.transmitters, field.hearing) = (30, 200, Some(9));
+        is_laid_at_the_bound(field, ReceiverClocks::Offset);
+        let chain = || clocked(Layout::Chain { extent: [400.0, 50.0] });
+        is_laid_at_the_bound(SimulateOptions { channels: 2, ..chain() }, ReceiverClocks::Offset);
+        is_laid_at_the_bound(SimulateOptions { rates: 2e-5, duration: Some(2e5), ..chain() }, ReceiverClocks::Rate);
+        let mut in_space = SimulateOptions::<3>::new();
+        (in_space.receivers, in_space.transmitters, in_space.hearing) = (20, 160, Some(9));
+        (in_space.noise, in_space.delays) = (0.01, 1e3);
+        in_space.layout = Layout::Chain { extent: [300.0, 60.0, 40.0] };
+        is_laid_at_the_bound(in_space, ReceiverClocks::Offset);
     }
 
     #[test]

@@ -15,5 +15,6 @@ pub(crate) mod rivals;
 pub(crate) mod same_network;
 mod shaken;
 pub(crate) mod starts;
+mod strays;
 pub(crate) mod submaps;
 pub(crate) mod truncated_cost;
