@@ -28,7 +28,7 @@ pub(crate) struct CalibrateSettings {
     anchors: Vec<Option<Vec<f64>>>,
     /// Place among receivers and then transmitters, coordinates, standard deviation.
     positions: Vec<(usize, Vec<Option<f64>>, f64)>,
-    distances: Vec<(usize, usize, f64)>,
+    distances: Vec<(usize, usize, f64, Option<f64>)>,
     receiver_delays: String,
     emissions: String,
     receiver_clocks: String,
@@ -36,6 +36,8 @@ pub(crate) struct CalibrateSettings {
     rate_sigma: Option<f64>,
     /// Of each receiver, by name.
     recorders: Option<Vec<String>>,
+    /// When each transmitter sends, metres.
+    emission_times: Option<Vec<f64>>,
     errors: String,
     estimate_speed: bool,
     seed: u64,
@@ -57,7 +59,7 @@ impl CalibrateSettings {
         };
         options.positions = self.positions.into_iter().map(measured).collect::<Result<_, Failure>>()?;
         options.estimate_speed = self.estimate_speed;
-        let known = |(a, b, distance)| KnownDistance { receivers: [a, b], distance };
+        let known = |(a, b, distance, sigma)| KnownDistance { receivers: [a, b], distance, sigma };
         options.distances = self.distances.into_iter().map(known).collect();
         options.search.max_starts = self.max_starts.unwrap_or(options.search.max_starts);
         options.search.min_starts = options.search.min_starts.min(options.search.max_starts);
@@ -124,6 +126,9 @@ pub(crate) fn calibrate<'py>(
         let mut measured = table.measured()?;
         if let Some(recorders) = &settings.recorders {
             measured = measured.with_recorders(recorders.clone()).map_err(Failure::input)?;
+        }
+        if let Some(times) = &settings.emission_times {
+            measured = measured.with_emission_times(times.clone()).map_err(Failure::input)?;
         }
         let done = match settings.dimensions {
             Some(2) => {

@@ -511,6 +511,15 @@ def test_ranges_have_no_offsets():
         tdoa.calibrate(tdoa.simulate(noise=0.01).pseudoranges, ranges=True)
 
 
+def test_taped_distances():
+    made = tdoa.simulate(6, 20, noise=0.1, ranges=True, seed=2)
+    d = np.linalg.norm(made.receivers[:, None] - made.receivers, axis=2)
+    taped = [("r1", "r4", d[0, 3], 0.001), (5, 1, d[5, 1], 0.001), ("r3", "r5", d[2, 4] + 1, 0.001)]
+    found = tdoa.calibrate(made.pseudoranges, ranges=True, distances=taped, dimensions=2)
+    assert [known["inlier"] for known in found.data["distances"]] == [True, True, False]
+    assert abs(np.linalg.norm(found.receivers[0] - found.receivers[3]) - d[0, 3]) < 0.004
+
+
 def test_recorders_with_clocks_of_their_own(programs, tmp_path):
     import json
     import subprocess
@@ -537,6 +546,17 @@ def test_recorders_with_clocks_of_their_own(programs, tmp_path):
     command = [programs["tdoa"], "calibrate", table, "--receiver-clocks", "rate", "--recorders", groups, "--json", "-"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert json.loads(printed)["clocks"] == found.data["clocks"]
+
+    # A pinger that sends by a clock of its own.
+    pinger = tdoa.simulate(8, 20, noise=0.01, delays=300, rates=2e-5, channels=8, duration=2e5, seed=1)
+    schedule = tdoa.Clocks(emissions="constant")
+    found = tdoa.calibrate(pinger.pseudoranges, clocks=schedule, times=pinger.offsets, dimensions=2)
+    assert [clock.recorder for clock in found.clocks] == ["all receivers"] and np.allclose(found.offsets, pinger.offsets)
+    assert abs(found.clocks[0].rate - pinger.clocks[0, 1]) < 5 * found.clocks[0].rate_std
+    in_seconds = tdoa.calibrate(
+        pinger.pseudoranges / 343, speed=343, clocks=schedule, times={f"s{j + 1}": t / 343 for j, t in enumerate(pinger.offsets)}, dimensions=2
+    )
+    assert np.allclose(in_seconds.receivers, found.receivers, atol=1e-6)
 
     # A clock of each receiver; receivers that share one have none.
     apart = tdoa.simulate(8, 20, noise=0.01, delays=3, seed=2).pseudoranges

@@ -107,7 +107,7 @@ impl ReceiverClockArguments {
             if sending.emissions() == Emissions::Unknown {
                 return Err(Failure::unusable("--times needs --emissions known or --emissions constant"));
             }
-            let times = input::emission_times(path, &measured, units)?;
+            let times = input::emission_times(path, &measured, units, sending.emissions())?;
             measured = measured.with_emission_times(times).map_err(Failure::unusable)?;
         }
         Ok(measured)

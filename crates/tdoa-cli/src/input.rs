@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use cli::input::{is_standard, name, source};
-use tdoa::Pseudoranges;
 use tdoa::calibrate::KnownDistance;
 use tdoa::read::{self, Nodes, ReadOptions, Units};
+use tdoa::{Emissions, Pseudoranges};
 
 use crate::Failure;
 
@@ -42,13 +42,17 @@ pub(crate) fn distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistan
     read.map_err(Failure::unusable)
 }
 
-/// When each transmitter of a table sends, metres.
-pub(crate) fn emission_times(path: &Path, measured: &Pseudoranges, units: Units) -> Result<Vec<f64>, Failure> {
-    let names = measured.transmitter_names();
+/// When each transmitter of a table sends, metres, where this is known of it.
+pub(crate) fn emission_times(
+    path: &Path,
+    measured: &Pseudoranges,
+    units: Units,
+    emissions: Emissions,
+) -> Result<Vec<f64>, Failure> {
     let read = if is_standard(path) {
-        read::read_emission_times_from(source(path)?, &name(path), names, units)
+        read::read_emission_times_from(source(path)?, &name(path), measured, units, emissions)
     } else {
-        read::read_emission_times(path, names, units)
+        read::read_emission_times(path, measured, units, emissions)
     };
     read.map_err(Failure::unusable)
 }

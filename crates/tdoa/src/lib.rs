@@ -56,6 +56,7 @@ mod candidates;
 mod cells;
 mod clocks;
 pub mod degeneracy;
+mod distances;
 mod duplicates;
 mod flatness;
 mod generated;
@@ -82,9 +83,10 @@ pub mod simulate;
 pub mod summary;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Errors, Hypotheses, KnownDistance, MeasuredPosition,
-    MirrorImage, MovedPlace, ReceiverDelays, ReceiverEcho, ReceiverError, ReceiverErrorKind, RecorderClock, Residual,
-    Residuals, SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate, calibrate_with,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Errors, Hypotheses, KnownDistance, MeasuredDistance,
+    MeasuredPosition, MirrorImage, MovedPlace, ReceiverDelays, ReceiverEcho, ReceiverError, ReceiverErrorKind,
+    RecorderClock, Residual, Residuals, SearchOptions, SpeedEstimate, SystematicErrors, Truth, Unfinished, calibrate,
+    calibrate_with,
 };
 pub use cells::Cells;
 pub use clocks::{Clocks, Emissions, ReceiverClocks};

@@ -1,6 +1,8 @@
 //! The measured cells as flat lists, for the inner loops.
 
 use crate::clocks::{ClockTerms, ClockUnknowns, Emissions};
+use crate::distances::ReceiverDistance;
+use crate::loss::Loss;
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
@@ -134,6 +136,10 @@ pub(crate) struct Observations<const D: usize = 2> {
     emissions: Emissions,
     clocks: ClockUnknowns,
     clock_terms: ClockTerms,
+    /// Distances between receivers that were measured by themselves.
+    distances: Vec<ReceiverDistance>,
+    /// Standard deviation of the measurements, metres, or the factor on their own.
+    deviation: f64,
 }
 
 impl<const D: usize> Observations<D> {
@@ -154,6 +160,7 @@ impl<const D: usize> Observations<D> {
         let first = |j: usize| entries.partition_point(|o| o.transmitter < j);
         let columns = (0..=measured.transmitters()).map(first).collect();
         let all = Observations::of(measured.receivers(), entries, columns);
+        let all = Observations { distances: measured.distances().to_vec(), deviation: measured.deviation(), ..all };
         all.with_clocks(measured.emissions(), ClockUnknowns::new(measured.emissions(), measured.unknown_clocks()))
     }
 
@@ -190,6 +197,8 @@ impl<const D: usize> Observations<D> {
             emissions: Emissions::Unknown,
             clocks: ClockUnknowns::default(),
             clock_terms: ClockTerms::default(),
+            distances: Vec::new(),
+            deviation: 1.0,
         }
     }
 
@@ -230,9 +239,10 @@ impl<const D: usize> Observations<D> {
         split.with_clocks(self.emissions, self.clocks.split(receiver))
     }
 
-    /// Measurements of the same kind with the same pins.
+    /// Measurements of the same kind with the same pins and distances.
     fn like(&self, others: Self) -> Self {
         let others = others.pinned_like(self).with_other_unknowns(self.other_unknowns);
+        let others = Observations { distances: self.distances.clone(), deviation: self.deviation, ..others };
         others.with_clocks(self.emissions, self.clocks.clone())
     }
 
@@ -249,10 +259,44 @@ impl<const D: usize> Observations<D> {
         Observations { emissions, clocks, clock_terms, ..self }
     }
 
-    /// These measurements, whose standard deviation this is, metres, or the factor on their own: what is expected of clocks
-    /// is compared with it.
+    /// These measurements, whose standard deviation this is, metres, or the factor on their own: what is known of clocks and
+    /// distances is compared with it.
     pub(crate) fn at_deviation(self, deviation: f64) -> Self {
-        Observations { clocks: self.clocks.at_deviation(deviation), ..self }
+        Observations { deviation, ..self }
+    }
+
+    /// The standard deviation of the measurements that was given last.
+    #[inline]
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// Distances between receivers that were measured by themselves.
+    pub(crate) fn distances(&self) -> &[ReceiverDistance] {
+        &self.distances
+    }
+
+    /// The negative log-likelihood of what is known of clocks and distances, in a network.
+    pub(crate) fn misfit(&self, network: &Network<D>, is_least_squares: bool) -> f64 {
+        self.soft_misfit(network, is_least_squares, 0.0)
+    }
+
+    /// That of distances with at least this standard deviation.
+    fn soft_misfit(&self, network: &Network<D>, is_least_squares: bool, softest: f64) -> f64 {
+        let cost = |known: &ReceiverDistance| {
+            ReceiverDistance::cost(known.softened(softest).residual(network), is_least_squares)
+        };
+        let of_clocks = self.clocks.prior().map_or(0.0, |prior| prior.misfit(network));
+        self.distances.iter().fold(of_clocks, |sum, known| sum + cost(known))
+    }
+
+    /// What that costs among residuals of this loss, with distances of at least this standard deviation.
+    pub(crate) fn unexpected(&self, network: &Network<D>, loss: &Loss, softest: f64) -> f64 {
+        if self.distances.is_empty() && self.clocks.prior().is_none() {
+            return 0.0;
+        }
+        loss.prior_weight(self.deviation) / loss.scale.powi(2)
+            * self.soft_misfit(network, loss.nu.is_infinite(), softest)
     }
 
     /// These measurements, each with a share of its information.
@@ -392,11 +436,13 @@ impl<const D: usize> Observations<D> {
         let held = self.held.iter().filter(|&&held| held).count();
         let loose = D.saturating_sub(held);
         let measured = self.pins.len() + if self.pins.is_empty() { 0 } else { self.rigid_motions() };
-        let placed = if self.are_ranges() { D } else { D + 1 };
         let known = D * held + measured.max(loose * (loose + 1) / 2);
-        (D * self.receivers + placed * self.transmitters).saturating_sub(known)
-            + self.clocks.count()
-            + self.other_unknowns
+        (D * (self.receivers + self.transmitters)).saturating_sub(known) + self.unknown_times() + self.other_unknowns
+    }
+
+    /// Number of unknowns that are times: offsets of transmitters that have their own, and those of clocks.
+    pub(crate) fn unknown_times(&self) -> usize {
+        self.clocks.count() + if self.are_ranges() { 0 } else { self.transmitters }
     }
 }
 

@@ -2,13 +2,16 @@
 
 mod clocks;
 mod error;
+mod origin;
 
 pub use error::{MAX_CELLS, MAX_MAGNITUDE, PseudorangeError};
 
 use crate::candidates::Candidates;
 use crate::cells::Cells;
 use crate::clocks::{Emissions, Recorders};
+use crate::distances::{self, ReceiverDistance};
 use crate::median::median;
+pub(crate) use origin::{TimeOrigin, TimeScale};
 
 /// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
 /// rows, transmitters j in columns. Cells that were not measured are missing. Where a detector found several
@@ -40,10 +43,16 @@ pub struct Pseudoranges {
     emissions: Emissions,
     /// When each transmitter sends, by a clock of their own, metres.
     emission_times: Option<Vec<f64>>,
+    /// From when on measurements count, where they were read as moments.
+    origin: Option<TimeOrigin>,
     /// The recorder of each receiver, by name; names of receivers tell where nothing is said.
     recorders: Option<Vec<String>>,
     /// What is unknown of the recorders' clocks.
     unknown_clocks: Option<Recorders>,
+    /// Distances between receivers that were measured by themselves.
+    distances: Vec<ReceiverDistance>,
+    /// Standard deviation of the measurements, metres, or the factor on their own: what is known besides is compared with it.
+    deviation: f64,
 }
 
 impl Pseudoranges {
@@ -101,8 +110,11 @@ impl Pseudoranges {
             receivers_named: false,
             emissions: Emissions::Unknown,
             emission_times: None,
+            origin: None,
             recorders: None,
             unknown_clocks: None,
+            distances: Vec::new(),
+            deviation: 1.0,
             sigmas: None,
             are_shares: false,
             candidates: None,
@@ -382,6 +394,26 @@ impl Pseudoranges {
         Pseudoranges { cells, sigmas, candidates, ..self.clone() }
     }
 
+    /// This matrix with distances between receivers that were measured by themselves.
+    pub(crate) fn with_distances(self, distances: Vec<ReceiverDistance>) -> Pseudoranges {
+        Pseudoranges { distances, ..self }
+    }
+
+    /// Distances between receivers that were measured by themselves.
+    pub(crate) fn distances(&self) -> &[ReceiverDistance] {
+        &self.distances
+    }
+
+    /// This matrix, of measurements with this standard deviation, metres, or the factor on their own.
+    pub(crate) fn at_deviation(self, deviation: f64) -> Pseudoranges {
+        Pseudoranges { deviation, ..self }
+    }
+
+    /// The standard deviation of the measurements that was given last.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
     /// The matrix of these receivers and transmitters, in this order, with their names, standard
     /// deviations and candidates.
     ///
@@ -399,7 +431,10 @@ impl Pseudoranges {
             emissions: self.emissions,
             emission_times: self.emission_times.as_ref().map(|all| transmitters.iter().map(|&j| all[j]).collect()),
             recorders: self.recorders.as_ref().map(|all| receivers.iter().map(|&i| all[i].clone()).collect()),
+            origin: self.origin,
             unknown_clocks: self.unknown_clocks.as_ref().map(|all| all.select(receivers, transmitters)),
+            distances: distances::select(&self.distances, receivers),
+            deviation: self.deviation,
             are_shares: self.are_shares,
             cells: self.cells.select(receivers, transmitters),
             sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),

@@ -27,6 +27,10 @@ pub(crate) struct Restarts {
     receivers: usize,
     /// Row-major m x m guesses in metres.
     distances: Vec<f64>,
+    /// Which of them were measured.
+    measured: Vec<bool>,
+    /// Share of the pairs of receivers that these are not.
+    guessed: f64,
     /// A guess of the network's diameter in metres.
     pub(crate) diameter: f64,
 }
@@ -68,7 +72,16 @@ impl Restarts {
         for d in distances.iter_mut().filter(|d| d.is_nan()) {
             *d = typical;
         }
-        Restarts { receivers: m, distances, diameter }
+        let mut measured = vec![false; m * m];
+        for known in observations.distances() {
+            let [a, b] = known.receivers;
+            for place in [a * m + b, b * m + a] {
+                (distances[place], measured[place]) = (known.value, true);
+            }
+        }
+        let pairs = (m * m.saturating_sub(1)).max(1) as f64;
+        let guessed = 1.0 - measured.iter().filter(|is_measured| **is_measured).count() as f64 / pairs;
+        Restarts { receivers: m, distances, measured, guessed, diameter }
     }
 
     /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1:
@@ -84,13 +97,14 @@ impl Restarts {
         let mut squares = Mat::<f64>::zeros(m, m);
         for i in 0..m {
             for k in i + 1..m {
-                let d = self.distances[i * m + k] * (0.5 * spread * normal()).exp();
+                let factor = (0.5 * spread * normal()).exp();
+                let d = self.distances[i * m + k] * if self.measured[i * m + k] { 1.0 } else { factor };
                 squares[(i, k)] = d * d;
                 squares[(k, i)] = d * d;
             }
         }
         let mut receivers = scaled(&squares).unwrap_or_else(|| vec![[0.0; D]; m]);
-        let jitter = 0.3 * spread * self.diameter;
+        let jitter = 0.3 * spread * self.guessed * self.diameter;
         for r in &mut receivers {
             *r = r.map(|x| x + jitter * normal());
         }

@@ -63,6 +63,12 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
     if anchored > 0 {
         text += &format!("held at known positions: {}\n", counted(anchored, "receiver"));
     }
+    if !calibration.distances.is_empty() {
+        let (all, good) =
+            (calibration.distances.len(), calibration.distances.iter().filter(|known| known.inlier).count());
+        let agree = one_or(good, "agrees", "agree");
+        text += &format!("{} between receivers: {good} {agree} with the network\n", counted(all, "measured distance"));
+    }
     if let Some(truth) = &calibration.truth {
         text += &format!(
             "against the truth: {}, {} root mean square, {} with scale {:.4}\n",

@@ -222,7 +222,10 @@ fn unusable_knowledge_is_refused() {
     says(&["--anchors", text(&write("d.csv", "name,x,y\nr1,1e300,2\nr2,1,1\n"))], &["r1", "too large"]);
     let of_height = write("g.csv", "name,x,y,z\nr1,1,2,0\nr2,,,0\n");
     says(&["--dimensions", "2", "--anchors", text(&of_height)], &["r2 has neither x nor y"]);
-    says(&["--distances", text(&known)], &["--estimate-speed"]);
+    let taped = |content: &str, parts: &[&str]| says(&["--distances", text(&write("f.csv", content))], parts);
+    taped("r1,r2,3\n", &["r1 and r2 has no standard deviation", "fourth column", "--estimate-speed"]);
+    taped("r1,r2,3,none\n", &["line 1", "is not a standard deviation"]);
+    taped("r1,r2,3,-1\n", &["line 1", "is not a standard deviation"]);
     let distances = |content: &str, parts: &[&str]| {
         says(&["--estimate-speed", "--distances", text(&write("e.csv", content))], parts);
     };
@@ -271,6 +274,39 @@ fn ranges_have_no_offsets() {
     let (_directory, file) = simulated("--receivers 6 --transmitters 12 --noise 0.01");
     let (_, message, status) = calibrate(&[text(&file), "--ranges"]);
     assert!(status == Some(2) && message.contains("below zero"), "{message}");
+}
+
+/// Distances between receivers by a tape, one of them misread.
+#[test]
+fn taped_distances_are_measurements() {
+    let (directory, file) = simulated("--ranges --receivers 6 --transmitters 20 --noise 0.1 --seed 2");
+    let truth = directory.path().join("receivers.csv");
+    let nodes = tdoa::read::read_nodes(&truth).expect("positions");
+    let places: Vec<[f64; 2]> = nodes.positions().into_iter().flatten().collect();
+    let d = |a: usize, b: usize| (places[a][0] - places[b][0]).hypot(places[a][1] - places[b][1]);
+    let tape = directory.path().join("tape.csv");
+    let list = format!(
+        "from,to,distance,sigma\nr1,r4,{},0.001\nr6,r2,{},0.001\nr3,r5,{},0.001\n",
+        d(0, 3),
+        d(5, 1),
+        d(2, 4) + 1.0
+    );
+    std::fs::write(&tape, list).expect("written");
+    let run = |options: &[&str]| {
+        let (found, message, status) =
+            calibrate(&[&[text(&file), "--ranges", "--truth", text(&truth)], options].concat());
+        assert_eq!(status, Some(0), "{message}");
+        (found.expect("JSON"), message)
+    };
+    let (found, message) = run(&["--distances", text(&tape)]);
+    let taped = found["distances"].as_array().expect("list");
+    let inliers: Vec<bool> = taped.iter().map(|known| known["inlier"].as_bool().expect("bool")).collect();
+    assert_eq!(inliers, [true, true, false], "{found}");
+    assert!((taped[0]["found"].as_f64().expect("number") - d(0, 3)).abs() < 0.004, "{found}");
+    assert!(message.contains("3 measured distances between receivers: 2 agree with the network"), "{message}");
+    assert!(found["warnings"].to_string().contains("not used: r3-r5 (measured"), "{found}");
+    let (without, _) = run(&[]);
+    assert!(without.get("distances").is_none());
 }
 
 /// Recorders of two channels whose clocks were started apart and drift: their offsets and rates, against those of the first.

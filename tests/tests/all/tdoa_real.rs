@@ -2,13 +2,17 @@
 
 use experiments::trials::calibration::{damage, oracle};
 use tdoa::read::{Units, read, read_nodes};
-use tdoa::{CalibrateOptions, Calibration, Pseudoranges, ReceiverClocks, calibrate};
+use tdoa::{CalibrateOptions, Calibration, Emissions, KnownDistance, Pseudoranges, ReceiverClocks, calibrate};
 
 type Recording<const D: usize> = (Pseudoranges, Vec<Option<[f64; D]>>);
 
 fn recording<const D: usize>(name: &str) -> Recording<D> {
+    recorded(name, "pseudoranges_m.csv")
+}
+
+fn recorded<const D: usize>(name: &str, file: &str) -> Recording<D> {
     let folder = end_to_end::recording(name);
-    let measured = read(&folder.join("pseudoranges_m.csv"), Units::Metres).expect("measurements");
+    let measured = read(&folder.join(file), Units::Metres).expect("measurements");
     let nodes = read_nodes(&folder.join("receivers_gt.csv")).expect("receivers");
     let truth = nodes.in_order(measured.receiver_names()).expect("as many as receivers");
     (measured, truth)
@@ -84,5 +88,35 @@ fn clocks_that_are_put_on_recordings_are_found() {
             let found = errors(&found);
             assert!(found.0 <= 1.15 * best.0, "{name} {clocks:?} {channels}: {found:?} {best:?}");
         }
+    }
+}
+
+/// Six radio anchors in space and their ranges to a tag, which have errors of single anchors: as they are, with one constant,
+/// and with three distances by a tape.
+#[test]
+#[cfg_attr(not(recordings), ignore = "needs the recordings: SHARED_DIR names their folder")]
+fn ranges_of_radio_anchors_are_calibrated_at_the_oracle() {
+    for k in [4, 5, 7] {
+        let (measured, truth) = recorded::<3>(&format!("lps_uwb/data{k}"), "ranges_m.csv");
+        let between = |receivers: [usize; 2]| {
+            let [p, q] = receivers.map(|i| truth[i].expect("position"));
+            let distance = p.iter().zip(&q).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();
+            KnownDistance { receivers, distance, sigma: Some(0.01) }
+        };
+        let tape = [[0, 3], [1, 4], [2, 5]].map(between);
+        let models = [(Emissions::Known, 0), (Emissions::Constant, 0), (Emissions::Constant, 3)];
+        let [_, _, taped] = models.map(|(emissions, taped)| {
+            let mut options = CalibrateOptions::<3>::new();
+            options.clocks.emissions = emissions;
+            options.distances = tape[..taped].to_vec();
+            let best = errors(&oracle(&measured, &truth, &options).expect("oracle"));
+            let mut found = calibrate(&measured, &options).expect("calibration");
+            found.compare(&truth);
+            let found = errors(&found);
+            assert!(found.0 <= 1.2 * best.0, "data{k} {emissions:?} {taped}: {found:?} {best:?}");
+            found.0
+        });
+        // Ranges have errors of a tenth of a metre, and the array is two metres wide.
+        assert!(taped < 0.15, "data{k}: {taped}");
     }
 }

@@ -1,5 +1,6 @@
 """What is unknown of the clocks of transmitters and recorders."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -67,8 +68,8 @@ class RecorderClock(NamedTuple):
     at: float | None
 
 
-def settings(clocks, ranges, receiver_delays, recorders, receivers):
-    """The settings of a calibration of these receivers, by name, that clocks are part of."""
+def settings(clocks, ranges, receiver_delays, recorders, receivers, times, transmitters, factor):
+    """The settings of a calibration of these nodes, by name, that clocks are part of; `factor` makes metres of times."""
     clocks = Clocks() if clocks is None else clocks
     if not isinstance(clocks, Clocks):
         raise InputError(f"clocks must be tdoa.Clocks(emissions=..., receivers=...), not {clocks!r}")
@@ -81,14 +82,36 @@ def settings(clocks, ranges, receiver_delays, recorders, receivers):
         )
     if recorders is not None and clocks.receivers == "common":
         raise InputError('recorders have clocks of their own: give clocks=tdoa.Clocks(receivers="offset") or "rate" too')
+    emissions = "known" if ranges else clocks.emissions
+    if times is not None and emissions == "unknown":
+        raise InputError('times are when transmitters send: give clocks=tdoa.Clocks(emissions="known") or "constant" too')
     return {
         "receiver_delays": "none" if apart else receiver_delays,
-        "emissions": "known" if ranges else clocks.emissions,
+        "emissions": emissions,
+        "emission_times": _times(times, transmitters, 1.0 if factor is None else factor),
         "receiver_clocks": "offset" if apart else clocks.receivers,
         "offset_sigma": number("offset_sigma", clocks.offset_sigma),
         "rate_sigma": number("rate_sigma", clocks.rate_sigma),
         "recorders": list(receivers) if apart else _recorders(recorders, receivers),
     }
+
+
+def _times(given, transmitters, factor):
+    """When each transmitter sends, metres."""
+    if given is None:
+        return None
+    if isinstance(given, Mapping):
+        odd = [name for name in given if name not in transmitters] + [name for name in transmitters if name not in given]
+        if odd:
+            raise InputError(f"times must have one of each transmitter, and no others: look at {odd[0]}")
+        given = [given[name] for name in transmitters]
+    try:
+        times = [float(time) for time in given]
+    except (TypeError, ValueError):
+        raise InputError("times must be a number for each transmitter, or a dict from transmitters to numbers") from None
+    if len(times) != len(transmitters):
+        raise InputError(f"times has {len(times)} numbers for {len(transmitters)} transmitters; give one for each")
+    return [factor * time for time in times]
 
 
 def _recorders(given, receivers):

@@ -140,6 +140,7 @@ def calibrate(
     ranges=False,
     clocks=None,
     recorders=None,
+    times=None,
     errors="auto",
     distances=None,
     estimate_speed=False,
@@ -188,12 +189,16 @@ def calibrate(
     recorders : sequence of str, or dict of receiver to recorder, optional
         The recorder of each receiver: those of one share a clock. By default receivers with names such as "rec1:1" and "rec1:2" are
         channels of one, and every other receiver is a recorder by itself; so are those that a dict leaves out.
+    times : array_like or dict of transmitter to time, optional
+        When each transmitter sends, in the unit of the measurements, where `clocks` says that this is known: by the receivers' clock
+        with ``emissions="known"``, by one whose offset and rate against it are unknown with ``emissions="constant"``.
     errors : {"auto", "symmetric", "one-sided"}
         How measurements are wrong that are wrong by more than noise: too long or too short alike, or nearly all too long, as where
         sound or radio comes by a detour, which does not go together with `receiver_delays`. With "auto" the latter is tried where no
         network fits, and said.
-    distances : sequence of (receiver, receiver, metres), optional
-        Known distances between receivers, by name or by index, for `estimate_speed`.
+    distances : sequence of (receiver, receiver, metres, deviation), optional
+        Known distances between receivers, by name or by index, such as taped ones or ranges between anchors: measurements beside the
+        others, with their standard deviations in metres. For `estimate_speed` the deviation may be left out.
     estimate_speed : bool
         Whether the propagation speed is estimated from known distances and those between anchors.
     max_starts, agreeing : int, optional
@@ -251,7 +256,9 @@ def calibrate(
         "anchors": exact,
         "positions": measured,
         "distances": _distances(distances, receivers, count),
-        **clock_settings(clocks, bool(ranges), text("receiver_delays", receiver_delays), recorders, nodes[:count]),
+        **clock_settings(
+            clocks, bool(ranges), text("receiver_delays", receiver_delays), recorders, nodes[:count], times, nodes[count:], factor
+        ),
         "errors": text("errors", errors),
         "estimate_speed": bool(estimate_speed),
         "seed": seeded(seed),
@@ -275,10 +282,13 @@ def _distances(distances, names, count):
     found = []
     for each in distances if distances is not None else ():
         try:
-            first, second, metres = each
+            first, second, metres, *deviation = each
+            (deviation,) = deviation or (None,)
         except (TypeError, ValueError):
-            raise InputError(f"distances must be triples (receiver, receiver, metres), not {each!r}") from None
-        found.append((place(first), place(second), number("a distance", metres)))
+            raise InputError(f"distances must be (receiver, receiver, metres, deviation), not {each!r}") from None
+        if deviation is not None:
+            deviation = number("the deviation of a distance", deviation)
+        found.append((place(first), place(second), number("a distance", metres), deviation))
     return found
 
 

@@ -59,9 +59,10 @@ pub(crate) struct Arguments {
     /// latter is tried where no network fits, and said.
     #[arg(long, value_enum, default_value = "auto")]
     pub(super) errors: Side,
-    /// Known distances between some receivers (receiver,receiver,distance, metres), for
-    /// --estimate-speed.
-    #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
+    /// Known distances between some receivers (receiver,receiver,distance,sigma; metres), such as taped ones or ranges
+    /// between anchors: measurements beside the others. With --estimate-speed they tell the speed instead, and sigma may
+    /// be left out.
+    #[arg(long, value_name = "FILE.csv")]
     pub(super) distances: Option<PathBuf>,
     /// Estimates the propagation speed from the known distances and those between anchors: with
     /// --units s, ms, us, ns or samples in metres a second (only --sigma depends on --speed then),

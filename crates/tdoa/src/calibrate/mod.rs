@@ -28,6 +28,7 @@ pub use receivers::errors::{MovedPlace, ReceiverError, ReceiverErrorKind};
 pub use report::calibration::{Alternative, Calibration};
 pub use report::candidates::ChosenCandidate;
 pub use report::clocks::RecorderClock;
+pub use report::distances::MeasuredDistance;
 pub use report::residuals::{Residual, Residuals};
 pub use report::systematic::SystematicErrors;
 pub use report::truth::Truth;

@@ -123,7 +123,7 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// How measurements are wrong if they are wrong by more than noise. Default
     /// [`Errors::Auto`].
     pub errors: Errors,
-    /// Known distances between receivers, for `estimate_speed`. Default empty.
+    /// Known distances between receivers: measurements beside the others, or for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
     /// Whether the propagation speed with which the measurements were converted to metres is a
     /// guess. It is then replaced by the speed that follows from the known distances and the
@@ -138,6 +138,8 @@ pub struct KnownDistance {
     pub receivers: [usize; 2],
     /// Metres.
     pub distance: f64,
+    /// Its standard deviation, metres, which it needs as a measurement; for `estimate_speed`, `None` is exact.
+    pub sigma: Option<f64>,
 }
 
 /// A position of a receiver or transmitter that was measured by other means.

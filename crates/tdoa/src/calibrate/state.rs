@@ -70,6 +70,8 @@ impl<'a, const D: usize> State<'a, D> {
         options: &'a CalibrateOptions<D>,
         monitor: &'a Monitor,
     ) -> State<'a, D> {
+        // What is known besides is compared with measurements of this deviation.
+        let measured = measured.at_deviation(known.unwrap_or(1.0));
         State {
             observations: Observations::new(&measured, |_, _| true),
             options,

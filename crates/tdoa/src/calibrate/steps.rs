@@ -1,6 +1,7 @@
 //! The steps of a calibration, from measurements to a report.
 
 use crate::calibrate::input::anchors;
+use crate::calibrate::input::distances::with_distances;
 use crate::calibrate::input::impossible::without_impossible;
 use crate::calibrate::input::ranges::with_clocks;
 use crate::calibrate::input::selection::Input;
@@ -45,6 +46,7 @@ impl<'a, const D: usize> Draft<'a, D> {
         anchors::validate(measured, options)?;
         let (table, impossible) = without_impossible(measured);
         let (table, negative) = with_clocks(table, options.clocks)?;
+        let table = with_distances(table, options);
         let left_out = impossible.into_iter().chain(negative);
         check(monitor)?;
         let mut usable = usable::<D>(&table)?;

@@ -10,8 +10,6 @@ pub(crate) struct ClockPrior {
     /// One over the variances of offsets and of drifts over half the recording, one over square metres; 0 where nothing is
     /// expected.
     pub(super) information: [f64; 2],
-    /// Standard deviation of the measurements, metres, or the factor on their own.
-    pub(super) deviation: f64,
     pub(super) clocks: Vec<ExpectedClock>,
 }
 
@@ -27,11 +25,6 @@ pub(super) struct ExpectedClock {
 }
 
 impl ClockPrior {
-    /// Standard deviation of the measurements, metres, or the factor on their own: what makes their residuals comparable.
-    pub(crate) fn deviation(&self) -> f64 {
-        self.deviation
-    }
-
     /// How unlikely the clocks of a network are: half the squares of what they are off the mean, in their deviations.
     pub(crate) fn misfit<const D: usize>(&self, network: &Network<D>) -> f64 {
         let squares = (0..2).map(|k| self.information[k] * self.off_mean(network, k).map(|x| x * x).sum::<f64>());

@@ -20,8 +20,6 @@ pub(crate) struct Recorders {
     taken: Vec<[f64; 2]>,
     /// One over the variances of offsets and drifts that are expected, 0 where nothing is.
     information: [f64; 2],
-    /// Standard deviation of the measurements, metres, or the factor on their own.
-    deviation: f64,
     /// Whether clocks are told against those that transmitters send by: the rate of the first one is unknown too.
     is_scheduled: bool,
 }
@@ -36,7 +34,6 @@ impl Recorders {
             middles: Vec::new(),
             unit: 0.0,
             information: [0.0; 2],
-            deviation: 1.0,
             is_scheduled: false,
         }
     }
@@ -80,16 +77,6 @@ impl Recorders {
     /// One over the variances of offsets and drifts that are expected, 0 where nothing is.
     pub(crate) fn information(&self) -> [f64; 2] {
         self.information
-    }
-
-    /// Standard deviation of the measurements, metres, or the factor on their own.
-    pub(crate) fn deviation(&self) -> f64 {
-        self.deviation
-    }
-
-    /// These recorders, of measurements with this standard deviation, metres, or the factor on their own.
-    pub(crate) fn at_deviation(self, deviation: f64) -> Recorders {
-        Recorders { deviation, ..self }
     }
 
     /// Per receiver, what has been taken off the measurements for its clock.

@@ -66,7 +66,7 @@ impl Model {
         let [offset, drift] = EXPECTED;
         let expected = |recorders: Recorders| {
             let rate = recorders.rate(drift);
-            recorders.expecting(Some(offset), Some(rate)).at_deviation(SIGMA)
+            recorders.expecting(Some(offset), Some(rate))
         };
         let clocks = if self.expecting { clocks.map(expected) } else { clocks };
         let mut values = network.pseudoranges();
@@ -76,7 +76,7 @@ impl Model {
         }
         [1, n + 3, 2 * n + 4].into_iter().for_each(|k| values[k] = f64::NAN);
         let measured = Pseudoranges::new(m, n, values).unwrap().with_emissions(self.emissions);
-        (network, measured.with_unknown_clocks(clocks))
+        (network, measured.with_unknown_clocks(clocks).at_deviation(SIGMA))
     }
 
     /// Unknowns of a network of this size: those of nodes, less a rigid motion, and those of clocks.

@@ -2,7 +2,6 @@
 
 use crate::clocks::prior::{ClockPrior, ExpectedClock};
 use crate::clocks::{Emissions, Recorders};
-use crate::loss::Loss;
 use crate::network::Network;
 
 /// Which unknowns the clocks have beside the network's nodes.
@@ -103,22 +102,10 @@ impl ClockUnknowns {
         ClockUnknowns { recorders, ..self.clone() }
     }
 
-    /// These unknowns, of measurements with this standard deviation, metres, or the factor on their own.
-    pub(crate) fn at_deviation(mut self, deviation: f64) -> ClockUnknowns {
-        self.prior.iter_mut().for_each(|prior| prior.deviation = deviation);
-        self
-    }
-
     /// What is expected of them, where something is.
     #[inline]
     pub(crate) fn prior(&self) -> Option<&ClockPrior> {
         self.prior.as_ref()
-    }
-
-    /// What it costs, by this loss, that clocks are not as expected.
-    pub(crate) fn unexpected<const D: usize>(&self, network: &Network<D>, loss: &Loss) -> f64 {
-        let of = |prior: &ClockPrior| loss.prior_weight(prior.deviation()) / loss.scale.powi(2) * prior.misfit(network);
-        self.prior.as_ref().map_or(0.0, of)
     }
 
     /// The offset and the drift of a receiver's recorder among these unknowns, as far as they are unknown.
@@ -139,9 +126,6 @@ fn prior(recorders: &Recorders, present: &[usize], unknowns: &[[Option<usize>; 2
         let receiver = recorders.of_receivers().iter().position(|of| of == recorder)?;
         Some(ExpectedClock { receiver, unknowns: *unknowns, taken: recorders.taken()[receiver] })
     };
-    (information != [0.0; 2]).then(|| ClockPrior {
-        information,
-        deviation: recorders.deviation(),
-        clocks: present.iter().zip(unknowns).filter_map(expected).collect(),
-    })
+    (information != [0.0; 2])
+        .then(|| ClockPrior { information, clocks: present.iter().zip(unknowns).filter_map(expected).collect() })
 }

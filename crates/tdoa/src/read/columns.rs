@@ -5,11 +5,15 @@ use super::error::ReadError;
 use super::heading::{Heading, check_unit, quoted};
 use super::role::Role;
 use super::units::ReadOptions;
-use super::words::{LENGTH, RECEIVER, REFERENCE, SIGMA, TIME, TRANSMITTER, WEIGHT, Words};
+use super::words::{CHANNEL, LENGTH, RECEIVER, RECORDER, REFERENCE, SIGMA, TIME, TRANSMITTER, WEIGHT, Words};
 
 /// Where a list has its columns.
 pub(super) struct Columns {
     pub(super) receiver: usize,
+    /// The recorder of the receiver.
+    pub(super) recorder: Option<usize>,
+    /// Whether receivers are channels, which each recorder may count for itself.
+    pub(super) are_channels: bool,
     pub(super) transmitter: usize,
     pub(super) value: usize,
     /// Further candidates for the value.
@@ -28,6 +32,7 @@ pub(super) struct Columns {
 /// Columns by what their headings say that they hold.
 struct Roles {
     receivers: Vec<usize>,
+    recorders: Vec<usize>,
     transmitters: Vec<usize>,
     /// Measurements of either kind.
     values: Vec<usize>,
@@ -53,16 +58,21 @@ impl Roles {
             sure += usize::from(!said.is_empty());
             if said.is_empty() { all(|words| words.weak) } else { said }
         };
-        let (receivers, transmitters, values) = (found(&[&RECEIVER]), found(&[&TRANSMITTER]), found(&[&LENGTH, &TIME]));
+        let (all, transmitters, values) = (found(&[&RECEIVER]), found(&[&TRANSMITTER]), found(&[&LENGTH, &TIME]));
+        let (mut recorders, mut receivers) = all.iter().copied().partition::<Vec<_>, _>(|&k| headings[k].is(RECORDER));
+        if receivers.is_empty() {
+            (receivers, recorders) = (recorders, Vec::new());
+        }
         let times = values.iter().copied().filter(|&k| headings[k].may_be(&TIME)).collect();
         let (sigmas, weights, references) = (under(SIGMA.sure), under(WEIGHT.sure), under(REFERENCE.sure));
-        Roles { receivers, transmitters, values, times, sigmas, weights, references, candidates: Vec::new(), sure }
+        let candidates = Vec::new();
+        Roles { receivers, recorders, transmitters, values, times, sigmas, weights, references, candidates, sure }
     }
 
     /// Puts what the options say in the place of what headings do.
     fn given(&mut self, said: &[(Role, usize)]) {
         let (nodes, measured) = ([&mut self.receivers, &mut self.transmitters], [&mut self.values, &mut self.times]);
-        for of in nodes.into_iter().chain(measured).chain([&mut self.sigmas, &mut self.weights]) {
+        for of in nodes.into_iter().chain(measured).chain([&mut self.sigmas, &mut self.weights, &mut self.recorders]) {
             of.retain(|k| said.iter().all(|(_, given)| given != k));
         }
         let given = |role: Role| said.iter().filter(move |(given, _)| *given == role).map(|(_, k)| *k);
@@ -72,6 +82,7 @@ impl Roles {
             }
         };
         put(Role::Receiver, &mut self.receivers);
+        put(Role::Recorder, &mut self.recorders);
         put(Role::Transmitter, &mut self.transmitters);
         put(Role::Sigma, &mut self.sigmas);
         put(Role::Weight, &mut self.weights);
@@ -190,13 +201,25 @@ pub(super) fn list_columns(
             ),
         });
     }
-    let Roles { receivers, transmitters, mut values, mut times, sigmas, weights, references, candidates, .. } = roles;
+    let Roles {
+        receivers,
+        recorders,
+        transmitters,
+        mut values,
+        mut times,
+        sigmas,
+        weights,
+        references,
+        candidates,
+        ..
+    } = roles;
     if let (true, Some((first, is_time))) = (values.is_empty(), first_of_numbered(&headings)) {
         values.push(first);
         times.extend(is_time.then_some(first));
     }
     let needed = [("receiver", &receivers), ("transmitter", &transmitters), ("value", &values)];
-    for (role, found) in needed.iter().chain(&[("sigma", &sigmas), ("weight", &weights), ("reference", &references)]) {
+    let others = [("sigma", &sigmas), ("weight", &weights), ("reference", &references), ("recorder", &recorders)];
+    for (role, found) in needed.iter().chain(&others) {
         if let [a, b, ..] = found.as_slice() {
             return Err(bad(format!(
                 "the columns {:?} and {:?} may both be the {role}; rename one, or say which (--columns {role}={})",
@@ -250,11 +273,32 @@ pub(super) fn list_columns(
                 .into(),
         ));
     }
+    let recorder = recorders.first().copied();
+    if reference.is_some() && recorder.is_some() {
+        return Err(bad(
+            "recorders of differences are not read; leave out that column (--columns ignore=...), and give --recorders"
+                .into(),
+        ));
+    }
     let headed = |name: &str| headings.iter().position(|heading| heading.name == name);
     let selection = headed("view").and(headed("selection"));
     let (receiver, transmitter, value) = (*receiver, *transmitter, *value);
+    let are_channels = recorder.is_some() && headings[receiver].is(CHANNEL);
     let (repeats, count) = (options.candidates, cells.len());
-    Ok(Some(Columns { receiver, transmitter, value, further, repeats, sigma, weight, reference, selection, count }))
+    Ok(Some(Columns {
+        receiver,
+        recorder,
+        are_channels,
+        transmitter,
+        value,
+        further,
+        repeats,
+        sigma,
+        weight,
+        reference,
+        selection,
+        count,
+    }))
 }
 
 /// Refuses columns of a matrix that hold something else than measurements.

@@ -1,4 +1,4 @@
-//! Known distances between receivers: `receiver,receiver,distance`, with or without a header.
+//! Known distances between receivers: `receiver,receiver,distance[,sigma]`, with or without a header.
 
 use std::io::Read;
 use std::path::Path;
@@ -9,7 +9,8 @@ use super::numbers::{Numbers, number, shorten};
 use super::source::{open, text};
 use crate::calibrate::KnownDistance;
 
-/// Reads known distances in metres between receivers of these names.
+/// Reads known distances in metres between receivers of these names, with their standard deviations as far as there is a
+/// fourth column.
 ///
 /// # Errors
 /// A file that cannot be read, lines without two of the names and a number.
@@ -33,7 +34,9 @@ pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> R
             continue;
         }
         let bad = |problem: String| ReadError::Line { file: file.to_string(), line: record.line, problem };
-        let [a, b, length, ..] = record.cells.as_slice() else {
+        let (a, b, length, sigma) = if let [a, b, length, rest @ ..] = record.cells.as_slice() {
+            (a, b, length, rest.first().filter(|cell| !cell.is_empty()))
+        } else {
             return Err(bad("needs two names of receivers and their distance in metres".to_string()));
         };
         if index == 0 && number(length).is_none() {
@@ -50,13 +53,17 @@ pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> R
         if !(distance > 0.0 && distance.is_finite()) {
             return Err(no_distance("give a positive number".to_string()));
         }
-        all.push(KnownDistance { receivers: [find(a)?, find(b)?], distance });
+        let sigma = sigma.map(|cell| match numbers.number(cell) {
+            Ok(sigma) if sigma > 0.0 && sigma.is_finite() => Ok(sigma),
+            _ => Err(bad(format!("{:?} is not a standard deviation in metres; give a positive number", shorten(cell)))),
+        });
+        all.push(KnownDistance { receivers: [find(a)?, find(b)?], distance, sigma: sigma.transpose()? });
     }
     if all.is_empty() {
         return Err(ReadError::Line {
             file: file.to_string(),
             line: 1,
-            problem: "has no distances; expected lines receiver,receiver,distance".to_string(),
+            problem: "has no distances; expected lines receiver,receiver,distance,sigma".to_string(),
         });
     }
     Ok(all)

@@ -1,5 +1,6 @@
 //! The CSV list: one measurement a line.
 
+use std::borrow::Cow;
 use std::collections::hash_map::Entry::{Occupied, Vacant};
 use std::collections::{HashMap, HashSet};
 
@@ -27,6 +28,7 @@ pub(super) fn list(
     let mut receivers = Names::default();
     let mut transmitters = Names::default();
     let mut entries: HashMap<(usize, usize), Entry> = HashMap::new();
+    let mut recorders: HashMap<usize, String> = HashMap::new();
     // Candidates behind the first of a pair.
     let mut further: Vec<(usize, usize, f64)> = Vec::new();
     let mut pairs = Pairs::default();
@@ -51,6 +53,13 @@ pub(super) fn list(
             continue;
         }
         let (receiver, transmitter) = (&cells[columns.receiver], &cells[columns.transmitter]);
+        let recorder = columns.recorder.map(|k| &cells[k]);
+        let receiver = &match recorder {
+            Some(recorder) if columns.are_channels && !recorder.is_empty() => {
+                Cow::Owned(format!("{recorder}:{receiver}"))
+            }
+            _ => Cow::Borrowed(receiver.as_str()),
+        };
         if receiver.is_empty() || transmitter.is_empty() {
             return Err(bad("names no receiver or no transmitter; both are needed".to_string()));
         }
@@ -78,6 +87,19 @@ pub(super) fn list(
         let sigma_or_weight = weight.unwrap_or_else(|| sigma.map_or(1.0, |sigma| sigma * factor));
         let at = (receivers.index(receiver), transmitters.index(transmitter));
         let reference = columns.reference.map(|k| &cells[k]);
+        if let Some(recorder) = recorder {
+            if recorder.is_empty() {
+                return Err(bad(format!("names no recorder of receiver {receiver}; each line needs it")));
+            }
+            let known = recorders.entry(at.0).or_insert_with(|| recorder.clone());
+            if known != recorder {
+                return Err(bad(format!(
+                    "receiver {receiver} has the recorders {} and {}; give receivers of different recorders different names",
+                    shorten(known),
+                    shorten(recorder)
+                )));
+            }
+        }
         let second = reference.map(|reference| receivers.index(reference));
         if value.is_nan() {
             continue;
@@ -126,8 +148,13 @@ pub(super) fn list(
         Pseudoranges::from_cells(m, n, entries.iter().map(|(&(i, j), entry)| (i, j, entry.value)))
     };
     let measured = measured.map_err(wrap)?.with_names(receivers.names, transmitters.names).map_err(wrap)?;
-    let measured = measured.with_candidates(further).map_err(wrap)?;
+    let mut measured = measured.with_candidates(further).map_err(wrap)?;
+    if columns.recorder.is_some() {
+        let all = (0..m).map(|i| recorders.remove(&i).unwrap_or_default()).collect();
+        measured = measured.with_recorders(all).map_err(wrap)?;
+    }
     refuse_thousands(&numbers, separator, units, &measured, file)?;
+    let measured = measured.with_origin(numbers.origin());
     let sigma_or_weight = |i: usize, j: usize| entries.get(&(i, j)).map_or(f64::NAN, |entry| entry.sigma_or_weight);
     match (columns.sigma, columns.weight) {
         (Some(_), _) => measured.with_sigma_of(sigma_or_weight).map_err(wrap),

@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use super::cells::Separator;
-use super::times::{Kind, Moment};
+use super::times::Moment;
 use super::units::Units;
 use super::words::MISSING;
+use crate::pseudoranges::{TimeOrigin, TimeScale};
 
 /// The numbers of one file: its decimal mark is that of the first number that has one, or the one
 /// that is given.
@@ -17,8 +18,8 @@ pub(super) struct Numbers {
     doubtful: Option<String>,
     /// Whether some number can only have a decimal mark there.
     is_decimal: bool,
-    /// The whole second from which moments count, and their kind.
-    base: Option<(i64, Kind)>,
+    /// From when on moments count.
+    origin: Option<TimeOrigin>,
     /// Whether plain numbers were read.
     has_plain: bool,
     /// The least and the greatest moment.
@@ -36,6 +37,16 @@ impl Numbers {
     /// With a decimal mark that is known; the other one may stand between thousands.
     pub(super) fn new(mark: Option<char>) -> Numbers {
         Numbers { mark, is_given: mark.is_some(), ..Numbers::default() }
+    }
+
+    /// Whose moments count from the origin of others that were read, or which are no moments where those were none.
+    pub(super) fn since(origin: Option<TimeOrigin>) -> Numbers {
+        Numbers { origin, has_plain: origin.is_none(), ..Numbers::default() }
+    }
+
+    /// From when on moments count, where moments were read.
+    pub(super) fn origin(&self) -> Option<TimeOrigin> {
+        self.origin
     }
 
     /// The number in a cell, NaN for what was not measured.
@@ -89,7 +100,7 @@ impl Numbers {
         let Some(moment) = Moment::parse(cell) else {
             let value = self.number(cell)?;
             self.has_plain |= !value.is_nan();
-            return if self.has_plain && self.base.is_some() { Err(MIXED.to_string()) } else { Ok(value) };
+            return if self.has_plain && self.origin.is_some() { Err(MIXED.to_string()) } else { Ok(value) };
         };
         if !matches!(units, Units::Seconds { .. }) {
             return Err(
@@ -97,15 +108,16 @@ impl Numbers {
                     .to_string(),
             );
         }
-        let (base, kind) = *self.base.get_or_insert((moment.seconds, moment.kind));
-        if self.has_plain || kind != moment.kind {
+        let first = TimeOrigin { seconds: moment.seconds, scale: moment.scale };
+        let origin = *self.origin.get_or_insert(first);
+        if self.has_plain || origin.scale != moment.scale {
             return Err(MIXED.to_string());
         }
-        let value = moment.since(base);
+        let value = moment.since(origin.seconds);
         let [least, most] = self.moments.unwrap_or([value; 2]);
         let range = [least.min(value), most.max(value)];
         self.moments = Some(range);
-        if kind == Kind::OfDay && range[1] - range[0] > HALF_DAY {
+        if origin.scale == TimeScale::OfDay && range[1] - range[0] > HALF_DAY {
             return Err(
                 "it is half a day from others: if midnight has passed between them, give the date too".to_string()
             );

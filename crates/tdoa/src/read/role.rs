@@ -18,6 +18,8 @@ pub enum Role {
     Sigma,
     /// Names of the receivers whose times are taken off.
     Reference,
+    /// Names of the recorders of receivers. Receivers below the heading of a channel are numbered for each recorder anew.
+    Recorder,
     /// Its weight: one over the square of its standard deviation, in any unit.
     Weight,
     /// Something else, which is not read.
@@ -36,6 +38,7 @@ const ROLES: &[(&str, Role)] = &[
     ("sigma", Role::Sigma),
     ("weight", Role::Weight),
     ("reference", Role::Reference),
+    ("recorder", Role::Recorder),
     ("ignore", Role::Ignore),
 ];
 

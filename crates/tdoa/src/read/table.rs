@@ -110,6 +110,7 @@ impl Matrix<'_> {
             check_matrix(&[], false, &rows, self.options.transpose, (file, line), self.options.units)?;
         }
         refuse_thousands(&self.numbers, self.separator, self.units, &measured, file)?;
+        let measured = measured.with_origin(self.numbers.origin());
         Ok(measured)
     }
 

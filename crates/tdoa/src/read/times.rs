@@ -1,20 +1,11 @@
 //! Moments as ISO 8601 writes them: `2024-05-12T05:30:35.405921Z`, or times of the day, `05:30:35.4`.
 
-/// What kind of moment it is: moments of one kind can be subtracted.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Kind {
-    /// A time of some day.
-    OfDay,
-    /// A date and a time, of a zone that is not said.
-    Local,
-    /// A date and a time with their zone.
-    Universal,
-}
+use crate::pseudoranges::TimeScale;
 
 /// A moment: whole seconds and the rest. The first is since 1970, or since midnight.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Moment {
-    pub(super) kind: Kind,
+    pub(super) scale: TimeScale,
     pub(super) seconds: i64,
     pub(super) rest: f64,
 }
@@ -28,16 +19,16 @@ impl Moment {
         }
         let Some((date, time)) = cell.split_once(['T', 't', ' ']) else {
             let (seconds, rest) = time_of_day(cell)?;
-            return Some(Moment { kind: Kind::OfDay, seconds, rest });
+            return Some(Moment { scale: TimeScale::OfDay, seconds, rest });
         };
         let days = days_of(date)?;
         let (time, zone) = split_zone(time.trim());
         let (seconds, rest) = time_of_day(time.trim())?;
-        let (kind, shift) = match zone {
-            None => (Kind::Local, 0),
-            Some(zone) => (Kind::Universal, seconds_of_zone(zone)?),
+        let (scale, shift) = match zone {
+            None => (TimeScale::Local, 0),
+            Some(zone) => (TimeScale::Universal, seconds_of_zone(zone)?),
         };
-        Some(Moment { kind, seconds: days * 86_400 + seconds - shift, rest })
+        Some(Moment { scale, seconds: days * 86_400 + seconds - shift, rest })
     }
 
     /// The seconds from some whole second of the same kind on.
@@ -130,19 +121,19 @@ mod tests {
     /// Seconds since 1970 as `date -u -d ... +%s` has them.
     #[test]
     fn moments() {
-        for (cell, kind, seconds, rest) in [
-            ("1970-01-01T00:00:00Z", Kind::Universal, 0, 0.0),
-            ("2024-05-12T05:30:35.405921Z", Kind::Universal, 1_715_491_835, 0.405921),
-            ("2024-05-12 05:30:35.405921", Kind::Local, 1_715_491_835, 0.405921),
-            ("2024-05-12T07:30:35,5+02:00", Kind::Universal, 1_715_491_835, 0.5),
-            ("2024-05-12T00:30:35-0500", Kind::Universal, 1_715_491_835, 0.0),
-            ("20240512T053035.25Z", Kind::Universal, 1_715_491_835, 0.25),
-            ("2024/05/12 05:30:35 UTC", Kind::Universal, 1_715_491_835, 0.0),
-            ("2000-02-29T23:59:59Z", Kind::Universal, 951_868_799, 0.0),
-            ("1969-12-31T23:59:59.5Z", Kind::Universal, -1, 0.5),
-            ("05:30:35.405921", Kind::OfDay, 19_835, 0.405921),
+        for (cell, scale, seconds, rest) in [
+            ("1970-01-01T00:00:00Z", TimeScale::Universal, 0, 0.0),
+            ("2024-05-12T05:30:35.405921Z", TimeScale::Universal, 1_715_491_835, 0.405921),
+            ("2024-05-12 05:30:35.405921", TimeScale::Local, 1_715_491_835, 0.405921),
+            ("2024-05-12T07:30:35,5+02:00", TimeScale::Universal, 1_715_491_835, 0.5),
+            ("2024-05-12T00:30:35-0500", TimeScale::Universal, 1_715_491_835, 0.0),
+            ("20240512T053035.25Z", TimeScale::Universal, 1_715_491_835, 0.25),
+            ("2024/05/12 05:30:35 UTC", TimeScale::Universal, 1_715_491_835, 0.0),
+            ("2000-02-29T23:59:59Z", TimeScale::Universal, 951_868_799, 0.0),
+            ("1969-12-31T23:59:59.5Z", TimeScale::Universal, -1, 0.5),
+            ("05:30:35.405921", TimeScale::OfDay, 19_835, 0.405921),
         ] {
-            assert_eq!(Moment::parse(cell), Some(Moment { kind, seconds, rest }), "{cell}");
+            assert_eq!(Moment::parse(cell), Some(Moment { scale, seconds, rest }), "{cell}");
         }
         for cell in [
             "",

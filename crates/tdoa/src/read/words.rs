@@ -54,6 +54,10 @@ pub(super) const RECEIVER: Words = Words {
     ],
 };
 
+/// Names of receivers that may be those of recorders of several, and of channels, which each recorder may count for itself.
+pub(super) const RECORDER: &[&str] = &["recorder", "aru"];
+pub(super) const CHANNEL: &[&str] = &["channel", "ch", "chan", "kanal"];
+
 /// Names of transmitters, or of the events that are heard.
 pub(super) const TRANSMITTER: Words = Words {
     sure: &[

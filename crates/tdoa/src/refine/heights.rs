@@ -131,7 +131,7 @@ impl<const D: usize> Heights<D> {
             now.told = told[0] + told[1];
             if known.is_none() {
                 let squares: f64 = observations.all().iter().map(|o| o.residual(&now.network).powi(2)).sum();
-                let unknowns = (2.0 * m + 3.0 * n - 3.0) + now.told;
+                let unknowns = now.in_the_plane(observations) as f64 + now.told;
                 let left = (observations.len() as f64 - unknowns).max(1.0);
                 now.deviation = (squares / left).sqrt();
             }
@@ -216,7 +216,7 @@ impl<const D: usize> Heights<D> {
         width: f64,
         monitor: &Monitor,
     ) -> Result<Option<f64>, Cancelled> {
-        let unknowns = 2 * self.network.receivers.len() + 3 * self.network.transmitters.len() - 3;
+        let unknowns = self.in_the_plane(observations);
         let mut errors = GrossErrors::new(observations.len(), width);
         let mut now = self.clone();
         let (mut before, mut rounds) = (0, 0);
@@ -242,7 +242,7 @@ impl<const D: usize> Heights<D> {
             let Some(determinant) = refiner.log_determinant_at(&now.network)? else { return Ok(None) };
             // Densities of positions over those of the measurements, as the equations have both in one unit.
             let prior: f64 = placed.pins().iter().map(|pin| pin.precision.ln()).sum();
-            let density = errors.log_density(kept.len(), placed.transmitters, squares, deviation);
+            let density = errors.log_density(kept.len(), placed.unknown_times(), squares, deviation);
             return Ok(Some(density + prior - 0.5 * determinant));
         }
     }
@@ -286,6 +286,12 @@ impl<const D: usize> Heights<D> {
         let of_place = |count: f64, tau: f64| (0.5 * (TAU / count).ln() + (tau / (2.0 * width)).ln()).min(0.0);
         let of_levels = if self.apart == 0.0 { 0.0 } else { of_place(m, self.receivers) - (m - 1.0) * LN_2 };
         of_deviation(m) + of_deviation(n) + of_place(n, self.transmitters) + of_levels
+    }
+
+    /// Number of unknowns without heights.
+    fn in_the_plane(&self, observations: &Observations<D>) -> usize {
+        let nodes = self.network.receivers.len() + self.network.transmitters.len();
+        (2 * nodes + observations.unknown_times()).saturating_sub(3)
     }
 
     /// The heights as measurements of the plane's place.
@@ -366,7 +372,8 @@ fn fitted<const D: usize>(
 /// Sum of the squares of the residuals, of pins too.
 fn squares<const D: usize>(pinned: &Observations<D>, network: &Network<D>) -> f64 {
     let cells = pinned.all().iter().map(|o| o.residual(network).powi(2));
-    cells.chain(pinned.pins().iter().map(|pin| pin.residual(network).powi(2))).sum()
+    let all: f64 = cells.chain(pinned.pins().iter().map(|pin| pin.residual(network).powi(2))).sum();
+    all + 2.0 * pinned.deviation().powi(2) * pinned.misfit(network, true)
 }
 
 /// Mean of the last coordinate.

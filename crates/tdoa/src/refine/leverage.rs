@@ -125,7 +125,7 @@ mod tests {
         let mut normal = Normal::new(&observations);
         let mut all = vec![0.0; observations.len()];
         residuals(&observations, &network, &mut all);
-        normal.linearise(&observations, &network, &all, &Loss { nu: f64::INFINITY, scale: 1.0 });
+        normal.linearise(&observations, &network, &all, &Loss { nu: f64::INFINITY, scale: 1.0 }, 0.0);
         // Rigid motions need some damping.
         assert!(normal.solve(&observations, 1e-9, &monitor).unwrap());
         let mut leverages = Leverages::default();

@@ -21,6 +21,7 @@ use super::cancel::{Cancelled, apart, check};
 use super::clock_block::ClockBlock;
 use super::eliminate::Eliminate;
 use crate::bordered::{Bordered, Placed};
+use crate::distances::ReceiverDistance;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::{Node, Observations};
@@ -44,6 +45,8 @@ pub(crate) struct Normal<const D: usize = 2> {
     rays: Vec<([f64; D], f64)>,
     /// Per receiver: the lower triangle of its block by rows, and its gradient.
     receiver_blocks: Vec<([[f64; D]; D], [f64; D])>,
+    /// Per distance between receivers: these, the unit vector between them, and its weight.
+    between: Vec<([usize; 2], [f64; D], f64)>,
     /// Per transmitter: its block and its gradient.
     transmitter_blocks: Vec<(Bordered<D>, Placed<D>)>,
     /// Inverse Cholesky factors of the damped transmitter blocks.
@@ -73,6 +76,7 @@ impl<const D: usize> Normal<D> {
             clocks: ClockBlock::new(observations),
             rays: vec![([0.0; D], 0.0); observations.len()],
             receiver_blocks: vec![([[0.0; D]; D], [0.0; D]); m],
+            between: Vec::with_capacity(observations.distances().len()),
             transmitter_blocks: vec![(Bordered::ZERO, ([0.0; D], 0.0)); n],
             inverse_factors: vec![None; n],
             schur: vec![0.0; size * size],
@@ -86,26 +90,54 @@ impl<const D: usize> Normal<D> {
     }
 
     /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over
-    /// their deviations, and of its pins.
+    /// their deviations, and of its pins. Distances between receivers have at least the standard deviation `softest`.
     pub(crate) fn linearise(
         &mut self,
         observations: &Observations<D>,
         network: &Network<D>,
         residuals: &[f64],
         loss: &Loss,
+        softest: f64,
     ) {
         self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
-        self.expect_clocks(observations, network, loss);
+        self.expect(observations, network, loss, softest);
     }
 
-    /// Adds what is expected of clocks to equations that were linearised with [`Normal::linearise_by`].
-    pub(super) fn expect_clocks(&mut self, observations: &Observations<D>, network: &Network<D>, loss: &Loss) {
+    /// [`Normal::add_known`] among residuals of this loss.
+    pub(super) fn expect(&mut self, observations: &Observations<D>, network: &Network<D>, loss: &Loss, softest: f64) {
+        let weight = loss.prior_weight(observations.deviation());
+        self.add_known(observations, network, weight, loss.nu.is_infinite(), softest);
+    }
+
+    /// Adds what is known of clocks and distances, whose log-likelihood has this weight, to equations that were linearised
+    /// with [`Normal::linearise_by`]. Distances have at least the standard deviation `softest`.
+    pub(super) fn add_known(
+        &mut self,
+        observations: &Observations<D>,
+        network: &Network<D>,
+        weight: f64,
+        is_least_squares: bool,
+        softest: f64,
+    ) {
         if let Some(prior) = observations.clocks().prior() {
-            self.clocks.expect(prior, network, loss.prior_weight(prior.deviation()));
+            self.clocks.expect(prior, network, weight);
+        }
+        for known in observations.distances() {
+            let known = known.softened(softest);
+            let (u, e) = (known.ray(network).0, known.residual(network));
+            let w = weight * ReceiverDistance::weight(e, is_least_squares) / known.sigma.powi(2);
+            for (i, towards) in known.receivers.into_iter().zip([1.0, -1.0]) {
+                let (rows, gradient) = &mut self.receiver_blocks[i];
+                for a in 0..D {
+                    (0..=a).for_each(|b| rows[a][b] += w * u[b] * u[a]);
+                    gradient[a] -= towards * w * e * known.sigma * u[a];
+                }
+            }
+            self.between.push((known.receivers, u, w));
         }
     }
 
-    /// Linearises under any loss, but for what is expected of clocks: `terms`, of the place of a measurement and its
+    /// Linearises under any loss, but for what is known of clocks and distances: `terms`, of the place of a measurement and its
     /// residual, and `pin_terms` give the weight and the residual that has, with that weight, the
     /// derivative of the loss.
     #[inline]
@@ -120,6 +152,7 @@ impl<const D: usize> Normal<D> {
         self.receiver_blocks.fill(([[0.0; D]; D], [0.0; D]));
         self.transmitter_blocks.fill((Bordered::ZERO, ([0.0; D], 0.0)));
         self.clocks.clear();
+        self.between.clear();
         let (clock_terms, has_clocks) = (observations.clock_terms(), !self.clocks.is_empty());
         for (k, ((o, ray), &e)) in observations.all().iter().zip(&mut self.rays).zip(residuals).enumerate() {
             let between = minus(network.transmitters[o.transmitter], network.receivers[o.receiver]);
@@ -265,6 +298,14 @@ impl<const D: usize> Normal<D> {
                 }
                 self.schur[(at + a) * size + at + a] = rows[a][a] * grow + floor * damping;
                 self.reduced_steps[at + a] = gradient[a];
+            }
+        }
+        for ([a, b], u, w) in &self.between {
+            let (row, column) = (D * a.max(b), D * a.min(b));
+            for (k, x) in u.iter().enumerate() {
+                for (l, y) in u.iter().enumerate() {
+                    self.schur[(column + k) * size + row + l] -= w * x * y;
+                }
             }
         }
         self.clocks.write(&mut self.schur, &mut self.reduced_steps, grow, floor * damping);

@@ -5,7 +5,7 @@ use super::descent::Descent;
 use super::leverage::Leverages;
 use super::normal::Normal;
 use super::reseed::reseed;
-use crate::loss::Loss;
+use crate::loss::{CAUCHY, Loss};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::{centroid, dot, minus};
@@ -76,6 +76,8 @@ pub(crate) struct NetworkRefiner<'a, const D: usize = 2> {
     nu: f64,
     /// Redundancy: share of the measurements that is left over when the unknowns are determined.
     share: f64,
+    /// Standard deviation of distances at an annealed scale of one: that of a typical measurement, metres.
+    soft: f64,
     descent: Descent<'a, D>,
     leverages: Leverages<D>,
     monitor: Monitor,
@@ -92,6 +94,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             observations,
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
+            soft: 1.0 / (CAUCHY * mean_square_precision(observations).sqrt()),
             descent: Descent::new(observations),
             leverages: Leverages::default(),
             monitor: monitor.clone(),
@@ -133,12 +136,11 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     /// one variance. That all nodes are pulled a little to the middle of the receivers, where these are at first, keeps
     /// networks with wrong clocks from growing beyond all bounds.
     fn descend(&mut self, mut network: Network<D>, from: f64, options: &RefineOptions) -> Network<D> {
-        let NetworkRefiner { observations, ref monitor, ref mut descent, ref mut leverages, .. } = *self;
+        let NetworkRefiner { observations, soft, ref monitor, ref mut descent, ref mut leverages, .. } = *self;
         descent.begin(&mut network);
         leverages.begin(observations);
-        let precisions: f64 = observations.all().iter().map(|o| o.precision * o.precision).sum();
         let weight = Loss { nu: self.nu, scale: 1.0 }.weight(0.0);
-        let pull = weight * (PULL * precisions / (observations.len().max(1) as f64 * from)).powi(2);
+        let pull = weight * (PULL * mean_square_precision(observations) / from).powi(2);
         let centre = centroid(network.receivers.iter());
         let mut annealed = from;
         for _ in 0..STEPS_BY_LEVERAGE {
@@ -148,12 +150,12 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 leverages.total(&loss, cells)
                     + loss.total(pins.iter().copied())
                     + 0.5 * pull * squares(network, centre) / loss.scale.powi(2)
-                    + observations.clocks().unexpected(network, &loss)
+                    + observations.unexpected(network, &loss, soft * annealed)
             };
             let cost = total(&descent.residuals, &network);
             let (terms, pin_terms) = (|k, e| (leverages.weight(&loss, k, e), e), |e| (loss.weight(e), e));
             descent.normal.linearise_by(observations, &network, &descent.residuals, terms, pin_terms);
-            descent.normal.expect_clocks(observations, &network, &loss);
+            descent.normal.expect(observations, &network, &loss, soft * annealed);
             descent.normal.pull_together(&network, centre, pull);
             match descent.step_down(&mut network, cost, 1e-14, total, monitor) {
                 Err(_) => break,
@@ -166,7 +168,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     }
 
     fn minimise(&mut self, mut network: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
-        let NetworkRefiner { observations, share, ref monitor, ref mut descent, .. } = *self;
+        let NetworkRefiner { observations, share, soft, ref monitor, ref mut descent, .. } = *self;
         descent.begin(&mut network);
         let mut annealed = options.anneal_from.unwrap_or(0.0);
         let mut loss = Loss { nu: self.nu, scale: 1.0 };
@@ -177,17 +179,17 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 fit_scale(&descent.residuals, &loss, share, 20).max(annealed).max(options.floor)
             }
         };
-        let total = |loss: &Loss, residuals: &[f64], network: &Network<D>| {
-            loss.total(residuals.iter().copied()) + observations.clocks().unexpected(network, loss)
+        let total = |loss: &Loss, annealed: f64, residuals: &[f64], network: &Network<D>| {
+            loss.total(residuals.iter().copied()) + observations.unexpected(network, loss, soft * annealed)
         };
-        let mut cost = total(&loss, &descent.residuals, &network);
+        let mut cost = total(&loss, annealed, &descent.residuals, &network);
         let mut calm = 0;
         for _ in 0..options.steps {
             if monitor.is_cancelled() {
                 break;
             }
-            descent.normal.linearise(observations, &network, &descent.residuals, &loss);
-            let by = |residuals: &[f64], network: &Network<D>| total(&loss, residuals, network);
+            descent.normal.linearise(observations, &network, &descent.residuals, &loss, soft * annealed);
+            let by = |residuals: &[f64], network: &Network<D>| total(&loss, annealed, residuals, network);
             let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, by, monitor) else { break };
             let improved = lower.is_some_and(|next| cost - next > options.tolerance * cost.abs());
             annealed *= options.anneal_factor;
@@ -196,7 +198,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
                 Some(scale) => scale.max(annealed),
                 None => fit_scale(&descent.residuals, &loss, share, 2).max(annealed).max(options.floor),
             };
-            cost = total(&loss, &descent.residuals, &network);
+            cost = total(&loss, annealed, &descent.residuals, &network);
             let settled = (loss.scale - before).abs() <= 1e-4 * loss.scale;
             calm = if improved || !settled { 0 } else { calm + 1 };
             if calm == 2 {
@@ -216,7 +218,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     pub(crate) fn normal_at(&mut self, network: &Network<D>, loss: &Loss) -> Result<&Normal<D>, Cancelled> {
         let descent = &mut self.descent;
         descent.look(network);
-        descent.normal.linearise(self.observations, network, &descent.residuals, loss);
+        descent.normal.linearise(self.observations, network, &descent.residuals, loss, 0.0);
         descent.normal.reduce(self.observations, 0.0, &self.monitor)?;
         Ok(&descent.normal)
     }
@@ -227,7 +229,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
         let descent = &mut self.descent;
         descent.look(network);
         let loss = Loss { nu: f64::INFINITY, scale: 1.0 };
-        descent.normal.linearise(self.observations, network, &descent.residuals, &loss);
+        descent.normal.linearise(self.observations, network, &descent.residuals, &loss, 0.0);
         descent.normal.log_determinant(self.observations, RIGID, &self.monitor)
     }
 
@@ -235,6 +237,11 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     pub(crate) fn normal(&self) -> &Normal<D> {
         &self.descent.normal
     }
+}
+
+fn mean_square_precision<const D: usize>(observations: &Observations<D>) -> f64 {
+    let squares: f64 = observations.all().iter().map(|o| o.precision * o.precision).sum();
+    squares / observations.len().max(1) as f64
 }
 
 /// Sum of the squares of the distances of all nodes from a point.

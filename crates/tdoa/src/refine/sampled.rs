@@ -18,6 +18,7 @@ use super::cancel::{Cancelled, check};
 use super::covariance::{Covariance, Reduced, own_covariance, reduced};
 use crate::align::align;
 use crate::bordered::{Bordered, Placed};
+use crate::distances::ReceiverDistance;
 use crate::network::Network;
 use crate::observations::{Node, Observation, Observations, Pin};
 use crate::points::{distance, dot, minus};
@@ -179,6 +180,16 @@ impl<'a, const D: usize> Sampler<'a, D> {
             by_receivers[*i][pin.axis] -= e * pin.precision;
         }
         let variance = self.sigma * self.sigma;
+        for known in self.observations.distances() {
+            let (u, e) = (known.ray(&network).0, known.residual(&network));
+            cost += 2.0 * variance * ReceiverDistance::cost(e, true);
+            let pull = variance * ReceiverDistance::weight(e, true) * e / known.sigma;
+            let [a, b] = known.receivers;
+            for (axis, u) in u.into_iter().enumerate() {
+                by_receivers[a][axis] += pull * u;
+                by_receivers[b][axis] -= pull * u;
+            }
+        }
         let mut gradient = vec![0.0; self.freedom];
         for (row, x) in self.modes.chunks_exact(self.freedom).zip(by_receivers.iter().flatten()) {
             gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a * x / variance);

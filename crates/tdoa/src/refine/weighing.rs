@@ -43,9 +43,10 @@ impl<'a, const D: usize> Weighing<'a, D> {
         let Weighing { descent, monitor } = self;
         let observations = descent.observations;
         let precision = 1.0 / (cost.deviation() * cost.deviation());
-        let total = |residuals: &[f64], _: &Network<D>| -> f64 {
+        let total = |residuals: &[f64], network: &Network<D>| -> f64 {
             let (cells, pins) = residuals.split_at(observations.len());
-            cells.iter().map(|&e| cost.cost(e)).sum::<f64>() + pins.iter().map(|e| 0.5 * precision * e * e).sum::<f64>()
+            let cells = cells.iter().map(|&e| cost.cost(e)).sum::<f64>();
+            cells + pins.iter().map(|e| 0.5 * precision * e * e).sum::<f64>() + observations.misfit(network, false)
         };
         descent.begin(&mut network);
         let mut now = total(&descent.residuals, &network);
@@ -53,6 +54,7 @@ impl<'a, const D: usize> Weighing<'a, D> {
             check(monitor)?;
             let terms = |_, e| cost.terms(e);
             descent.normal.linearise_by(observations, &network, &descent.residuals, terms, |e| (precision, e));
+            descent.normal.add_known(observations, &network, 1.0, false, 0.0);
             let before = now;
             now = descent.step_down(&mut network, now, f64::NEG_INFINITY, total, monitor)?.unwrap_or(now);
             if before - now <= 1e-10 * before.abs() {
@@ -74,6 +76,8 @@ impl<'a, const D: usize> Weighing<'a, D> {
         descent.look(network);
         let terms = |k: usize, e: f64| (weights[k], e - targets[k]);
         descent.normal.linearise_by(descent.observations, network, &descent.residuals, terms, |e| (1.0, e));
+        let square = descent.observations.deviation().powi(2);
+        descent.normal.add_known(descent.observations, network, square, false, 0.0);
         descent.trial.clone_from(network);
         Ok(descent.normal.solve(descent.observations, GAUGE, self.monitor)?.then(|| {
             descent.normal.step(descent.observations, network, &mut descent.trial);
@@ -92,6 +96,7 @@ impl<'a, const D: usize> Weighing<'a, D> {
             (square * weight, target)
         };
         descent.normal.linearise_by(descent.observations, network, &descent.residuals, terms, |e| (1.0, e));
+        descent.normal.add_known(descent.observations, network, square, false, 0.0);
         descent.normal.log_determinant(descent.observations, GAUGE, self.monitor)
     }
 

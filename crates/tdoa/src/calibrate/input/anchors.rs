@@ -98,6 +98,22 @@ pub(crate) fn validate<const D: usize>(
             ));
         }
     }
+    for known in options.distances.iter().filter(|known| !options.estimate_speed || known.sigma.is_some()) {
+        let [a, b] = known.receivers.map(|i| &measured.receiver_names()[i]);
+        match known.sigma {
+            Some(sigma) if sigma > 0.0 && sigma <= MAX_MAGNITUDE => {}
+            Some(sigma) => {
+                return bad(format!(
+                    "the standard deviation of the distance of {a} and {b} must be positive, not {sigma}"
+                ));
+            }
+            None => {
+                return bad(format!(
+                    "the distance of {a} and {b} has no standard deviation, which it needs beside other measurements; give one (a fourth                      column), or estimate the speed with it (--estimate-speed)"
+                ));
+            }
+        }
+    }
     if options.estimate_speed && known_distances(options).is_empty() {
         return bad(
             "no distance between receivers is known, which the speed needs; give two anchors or a distance".to_string()

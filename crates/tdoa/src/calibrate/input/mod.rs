@@ -1,6 +1,7 @@
 //! What takes part in a calibration, and what is known beforehand.
 
 pub(crate) mod anchors;
+pub(crate) mod distances;
 pub(crate) mod first_clocks;
 pub(crate) mod impossible;
 pub(crate) mod ranges;

@@ -54,7 +54,7 @@ fn as_ranges<const D: usize>(measured: &Pseudoranges) -> Result<(Pseudoranges, O
 
 #[cfg(test)]
 mod tests {
-    use crate::accuracy::cramer_rao;
+    use crate::accuracy::{cramer_rao, cramer_rao_with_clocks};
     use crate::align::align;
     use crate::calibrate::{Calibrates, Dimension};
     use crate::{CalibrateError, CalibrateOptions, Clocks, Emissions, SimulateOptions, calibrate, simulate};
@@ -103,6 +103,25 @@ mod tests {
         for emissions in [Emissions::Known, Emissions::Constant] {
             are_at_the_bound::<2>(emissions);
             are_at_the_bound::<3>(emissions);
+        }
+    }
+
+    /// Six receivers hear each transmitter, which has three coordinates: what is left over tells the noise, and the noise how
+    /// far the heights are to be believed.
+    #[test]
+    fn heights_of_ranges_are_believed() {
+        for seed in 0..6 {
+            let mut made = SimulateOptions::<3>::new();
+            (made.receivers, made.transmitters, made.noise, made.seed) = (6, 30, 0.1, seed);
+            (made.missing, made.outliers, made.emissions) = (0.1, 0.05, Emissions::Known);
+            let made = simulate(&made).unwrap();
+            let mut options = CalibrateOptions::<3>::new();
+            (options.clocks.emissions, options.seed) = (Emissions::Known, seed);
+            let found = calibrate(&made.pseudoranges, &options).unwrap();
+            let receivers: Vec<[f64; 3]> = found.receivers.iter().flatten().copied().collect();
+            let apart = align(&receivers, &made.network.receivers, false).unwrap().rms;
+            let bound = cramer_rao_with_clocks(&made.pseudoranges, &made.outliers, &made.network, 0.1, &options.clocks);
+            assert!(found.fits && apart < 3.0 * bound, "seed {seed}: {apart} {bound} {:?}", found.warnings);
         }
     }
 

@@ -31,6 +31,8 @@ type Known<const D: usize> = ([f64; D], [f64; D]);
 pub(crate) struct Span<const D: usize> {
     receivers: [usize; 2],
     distance: f64,
+    /// Its standard deviation, if it was measured as a distance.
+    sigma: f64,
     /// The known positions that it follows from.
     ends: Option<[Known<D>; 2]>,
 }
@@ -45,15 +47,20 @@ impl<const D: usize> Span<D> {
     fn variance(&self) -> f64 {
         let u = self.direction();
         let ends = self.ends.iter().flatten();
-        ends.map(|(_, sigma)| (0..D).map(|k| (u[k] * sigma[k]).powi(2)).sum::<f64>()).sum()
+        let of_ends: f64 = ends.map(|(_, sigma)| (0..D).map(|k| (u[k] * sigma[k]).powi(2)).sum::<f64>()).sum();
+        self.sigma.powi(2) + of_ends
     }
 }
 
 /// All known distances: the given ones and those between receivers of known position.
 pub(crate) fn known_distances<const D: usize>(options: &CalibrateOptions<D>) -> Vec<Span<D>> {
-    let given = options.distances.iter();
-    let mut all: Vec<Span<D>> =
-        given.map(|known| Span { receivers: known.receivers, distance: known.distance, ends: None }).collect();
+    let given = options.distances.iter().map(|known| Span {
+        receivers: known.receivers,
+        distance: known.distance,
+        sigma: known.sigma.unwrap_or_default(),
+        ends: None,
+    });
+    let mut all: Vec<Span<D>> = given.collect();
     let exact = options.anchors.iter().enumerate().filter_map(|(i, p)| Some((i, ((*p)?, [0.0; D]))));
     let measured = options.positions.iter().filter_map(|known| match known.node {
         Node::Receiver(i) => Some((i, (known.whole()?, known.sigma))),
@@ -63,7 +70,8 @@ pub(crate) fn known_distances<const D: usize>(options: &CalibrateOptions<D>) -> 
     for (k, (a, p)) in places.iter().enumerate() {
         for (b, q) in &places[k + 1..] {
             if p.0 != q.0 {
-                all.push(Span { receivers: [*a, *b], distance: distance(p.0, q.0), ends: Some([*p, *q]) });
+                let ends = Some([*p, *q]);
+                all.push(Span { receivers: [*a, *b], distance: distance(p.0, q.0), sigma: 0.0, ends });
             }
         }
     }
@@ -132,10 +140,12 @@ pub(crate) fn speed<const D: usize>(
         cells.map(|(p, q)| of_network[p] * joint[p * size + q] * of_network[q]).sum()
     };
     let of_positions: f64 = of_positions.iter().zip(&sigmas).map(|(share, sigma)| (share * sigma).powi(2)).sum();
+    let of_distances: f64 =
+        spans.iter().map(|(pair, span)| (weight(span) * found(*pair) / squares * span.sigma).powi(2)).sum();
     let misfit: f64 = spans.iter().map(|(pair, span)| (span.distance - factor * found(*pair)).powi(2)).sum();
     Ok(SpeedEstimate {
         factor,
-        factor_std: joint.map(|joint| (variance(joint).max(0.0) + of_positions).sqrt()),
+        factor_std: joint.map(|joint| (variance(joint).max(0.0) + of_positions + of_distances).sqrt()),
         metres_per_second: None,
         residual: (misfit / spans.len() as f64).sqrt(),
         distances: spans.len(),
@@ -152,7 +162,7 @@ mod tests {
         let network = Network { receivers: vec![[0.0, 0.0], [3.0, 4.0], [1.0, 0.0]], ..Default::default() };
         let usable = Usable { receivers: vec![0, 2, 3], transmitters: vec![], warnings: vec![] };
         let options = CalibrateOptions {
-            distances: vec![KnownDistance { receivers: [2, 0], distance: 10.0 }],
+            distances: vec![KnownDistance { receivers: [2, 0], distance: 10.0, sigma: None }],
             ..Default::default()
         };
         // The distance 5 m with independent errors of 0.1 m in all coordinates has a deviation of
@@ -162,6 +172,11 @@ mod tests {
         assert_eq!((found.factor, found.distances, found.residual), (2.0, 1, 0.0));
         assert!((found.factor_std.unwrap() - 0.4 * 0.1 * 2f64.sqrt()).abs() < 1e-12);
         assert_eq!(speed(&network, &usable, None, &options).unwrap().factor_std, None);
+        // A taped distance of deviation 0.3 m adds (0.3 / 5)^2.
+        let mut taped = options.clone();
+        taped.distances[0].sigma = Some(0.3);
+        let found = speed(&network, &usable, Some(&joint), &taped).unwrap();
+        assert!((found.factor_std.unwrap().powi(2) - 0.0032 - 0.0036).abs() < 1e-12 && found.factor == 2.0);
         // Positions 10 m apart, of deviation 0.1 m, add a variance of 0.02 m^2 times (5 / 25)^2.
         let place = |i: usize, x: f64| MeasuredPosition {
             node: Node::Receiver(i),

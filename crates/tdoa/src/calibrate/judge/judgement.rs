@@ -228,6 +228,7 @@ impl<const D: usize> State<'_, D> {
                 && placed
                 && determined
                 && self.contradiction.is_none()
+                && !self.distances_contradict()
                 && self.left.is_empty()
                 && self.doubts_choice.is_none()
                 && !self.has_two_places(),
@@ -296,6 +297,8 @@ impl<const D: usize> State<'_, D> {
             let alike = self.ranked[1..].iter().filter(|other| is_best(&other.network));
             agreeing += alike.map(|other| other.starts).sum::<usize>();
         }
+        // A start may count for two networks that are nearly one, and become one later.
+        let agreeing = agreeing.min(self.starts);
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let framed = |(other, loss, reason): (&Network<D>, f64, Reason<D>)| {
             let network = if self.is_held() {

@@ -14,6 +14,7 @@ use crate::align::align;
 use crate::calibrate::judge::neighbours::BEYOND;
 use crate::calibrate::search::same_network::{agree, fits};
 use crate::calibrate::search::truncated_cost::{annealed, refit_annealed, truncated};
+use crate::distances::ReceiverDistance;
 use crate::flatness::Plane;
 use crate::loss::Loss;
 use crate::minimal::NodeKind;
@@ -287,12 +288,28 @@ impl<const D: usize> Sides<'_, D> {
         let off = |axis: usize, value: f64| value - place.position[axis];
         let known: f64 = pins.map(|pin| 0.5 * (off(pin.axis, pin.value) * pin.precision / deviation).powi(2)).sum();
         known
+            + self.cost_of_distances(kind, index, place.position)
             + match kind {
                 NodeKind::Transmitters => {
                     self.observations.of_transmitter(index).iter().map(|o| truncated(residual(o))).sum::<f64>()
                 }
                 NodeKind::Receivers => self.observations.of_receiver(index).map(|o| truncated(residual(o))).sum(),
             }
+    }
+
+    /// What distances from a receiver to others cost where it is elsewhere.
+    fn cost_of_distances(&self, kind: NodeKind, index: usize, place: [f64; D]) -> f64 {
+        let cost = |known: &ReceiverDistance| -> f64 {
+            let other = match known.receivers {
+                [a, b] if a == index => b,
+                [a, b] if b == index => a,
+                _ => return 0.0,
+            };
+            let off = known.value - distance(place, self.network.receivers[other]);
+            ReceiverDistance::cost(off / known.sigma, true)
+        };
+        let all = if kind == NodeKind::Receivers { self.observations.distances() } else { &[] };
+        all.iter().map(cost).sum()
     }
 
     /// The measurements of a node that are no outliers.

@@ -206,7 +206,7 @@ mod tests {
             let measured = crate::Pseudoranges::new(9, 12, measured).unwrap();
             let known = |a: usize, b: usize| {
                 let distance = (all[a][0] - all[b][0]).hypot(all[a][1] - all[b][1]);
-                KnownDistance { receivers: [a, b], distance }
+                KnownDistance { receivers: [a, b], distance, sigma: None }
             };
             let distances = vec![known(0, 4), known(2, 7), known(8, 1)];
             let options =

@@ -12,6 +12,7 @@ use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::candidates::ChosenCandidate;
 use crate::calibrate::report::clocks::RecorderClock;
+use crate::calibrate::report::distances::MeasuredDistance;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;
@@ -155,6 +156,10 @@ pub struct Calibration<const D: usize = 2> {
     /// clock of the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clocks: Vec<RecorderClock>,
+    /// Distances between receivers that were measured besides; see
+    /// [`CalibrateOptions::distances`](crate::CalibrateOptions::distances).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub distances: Vec<MeasuredDistance>,
     /// What was known of the times at which transmitters sent. Where they were known, offsets are zero.
     #[serde(default)]
     pub emissions: Emissions,
@@ -332,6 +337,9 @@ impl<const D: usize> Calibration<D> {
             a.residual *= factor;
         }
         self.clocks.iter_mut().for_each(|clock| clock.rescale(factor));
+        for known in &mut self.distances {
+            [&mut known.measured, &mut known.sigma, &mut known.found].into_iter().for_each(|length| *length *= factor);
+        }
         for error in self.receiver_errors.iter_mut() {
             error.size *= factor;
         }

@@ -4,6 +4,7 @@ pub(crate) mod calibration;
 pub(crate) mod candidates;
 pub(crate) mod clocks;
 pub(crate) mod compare;
+pub(crate) mod distances;
 pub(crate) mod network;
 pub(crate) mod receiver_errors;
 pub(crate) mod residuals;

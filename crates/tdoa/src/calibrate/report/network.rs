@@ -92,6 +92,7 @@ impl<const D: usize> State<'_, D> {
             systematic: None,
             warnings: self.warnings(input, judged),
             clocks: self.recorder_clocks(input, uncertainty),
+            distances: self.measured_distances(),
             emissions: self.options.clocks.emissions,
             errors: if judged.one_sided.is_some() { Errors::OneSided } else { Errors::Symmetric },
             seed: self.options.seed,

@@ -51,7 +51,7 @@ fn search<const D: usize>(state: &mut State<'_, D>, sources: &[&dyn Hypotheses<D
     let refine = RefineOptions {
         scale: known.map(|sigma| sigma / to_deviation),
         anneal_from: Some(0.1 * diameter / unit),
-        by_leverage: has_clocks,
+        by_leverage: has_clocks || !small.distances().is_empty(),
         floor: state.floor,
         ..SEARCH
     };

@@ -11,15 +11,19 @@ use crate::observations::Observations;
 use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
 
 impl<const D: usize> State<'_, D> {
+    /// Compares what is known of clocks and distances with measurements of this deviation.
+    fn take_deviation(&mut self, deviation: f64) {
+        if !self.measured.distances().is_empty() || self.measured.unknown_clocks().is_some() {
+            self.measured = self.measured.clone().at_deviation(deviation);
+            self.observations = self.observations.clone().at_deviation(deviation);
+        }
+    }
+
     /// Refines and ranks the networks, from a deviation near that of the measurements.
     pub(crate) fn finish(&mut self, first: f64) -> Result<(), CalibrateError<D>> {
         let networks = std::mem::take(&mut self.ranked);
         (self.ranked, self.deviation) = self.finished(&self.observations, networks, first)?;
-        if let Some(recorders) = self.measured.unknown_clocks() {
-            let recorders = recorders.clone().at_deviation(self.deviation);
-            self.measured = self.measured.clone().with_unknown_clocks(Some(recorders));
-            self.observations = self.observations.clone().at_deviation(self.deviation);
-        }
+        self.take_deviation(self.deviation);
         Ok(())
     }
 

@@ -217,7 +217,8 @@ impl<const D: usize> Fitting<'_, D> {
         let cells = observations.all().iter().map(|o| mixture.cost(o.residual(network)));
         let left = observations.len().saturating_sub(observations.unknowns()) as f64;
         let volume = self.weighing.log_determinant(network, mixture)?.unwrap_or(f64::INFINITY);
-        Ok(cells.sum::<f64>() + pins.sum::<f64>() + left * mixture.deviation.ln() + 0.5 * volume)
+        let known = pins.sum::<f64>() + observations.misfit(network, false);
+        Ok(cells.sum::<f64>() + known + left * mixture.deviation.ln() + 0.5 * volume)
     }
 }
 

@@ -42,14 +42,15 @@ pub(crate) fn truncated_at() -> f64 {
     (2.0 * OUTLIER_COST).sqrt()
 }
 
-/// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is
-/// that of the measurements.
+/// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations, and the cost of what is known of
+/// clocks and distances; `deviation` is that of the measurements.
 pub(crate) fn truncated_cost<const D: usize>(
     observations: &Observations<D>,
     network: &Network<D>,
     deviation: f64,
 ) -> f64 {
-    observations.all().iter().map(|o| truncated(o.residual(network) / deviation)).sum()
+    let of_cells: f64 = observations.all().iter().map(|o| truncated(o.residual(network) / deviation)).sum();
+    of_cells + observations.misfit(network, true)
 }
 
 /// The networks with truncated costs as objectives, least first. The best ones are refitted to

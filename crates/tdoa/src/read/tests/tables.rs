@@ -118,6 +118,35 @@ fn moments_of_iso_8601() {
     assert!(said.contains("ISO 8601"), "{said}");
 }
 
+#[test]
+fn recorders_have_a_column_of_their_own() {
+    let with_channels = "recorder,channel,event,time\nA,1,x,1\nA,2,x,2\nB,1,x,3\nB,1,y,4\n";
+    let measured = with(with_channels, SECONDS).unwrap();
+    assert_eq!(measured.receiver_names(), ["A:1", "A:2", "B:1"]);
+    assert_eq!((measured.recorders(), measured.observed()), (vec![0, 0, 1], 4));
+    // Names of receivers are their own.
+    let with_names = "event,mic,recorder,time\nx,a,north,1\nx,b,south,2\nx,c,north,3\n";
+    let measured = with(with_names, SECONDS).unwrap();
+    assert_eq!(
+        (measured.receiver_names(), measured.recorder_name(2)),
+        (&["a", "b", "c"].map(String::from)[..], "north")
+    );
+    assert_eq!(measured.recorders(), [0, 1, 0]);
+    // As the options say, and alone, where it names the receivers.
+    let said = columns(&[(Role::Recorder, "box")]);
+    let boxed = with(&with_names.replace("recorder", "box"), said).unwrap();
+    assert_eq!(boxed.recorders(), [0, 1, 0]);
+    assert_eq!(with("recorder,event,time\nA,x,1\nB,x,2\n", SECONDS).unwrap().recorders(), [0, 1]);
+    for (text, part) in [
+        (with_names.replace("x,c,north", "x,c,"), "line 4: names no recorder of receiver c"),
+        (with_names.replace("x,c,north", "y,a,south"), "line 4: receiver a has the recorders north and south"),
+        (with_names.replace("event", "aru"), "may both be the recorder"),
+    ] {
+        let said = with(&text, SECONDS).unwrap_err();
+        assert!(said.contains(part), "{said}");
+    }
+}
+
 const RAVEN: &str = "Selection\tView\tChannel\tBegin Time (s)\tEnd Time (s)\tLow Freq (Hz)\tEvent\n\
     1\tWaveform 1\t1\t35.5\t35.6\t2000\tA\n1\tSpectrogram 1\t1\t35.5\t35.6\t2000\tA\n\
     2\tWaveform 1\t2\t35.25\t35.6\t2000\tA\n3\tWaveform 1\t1\t41\t41.5\t2000\tB\n";

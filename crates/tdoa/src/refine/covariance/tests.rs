@@ -3,8 +3,10 @@
 use super::*;
 use crate::clocks::Emissions;
 use crate::clocks::tests::{EXPECTED, Model, SIGMA, expecting, models};
+use crate::distances::ReceiverDistance;
 use crate::network::tests::random;
 use crate::observations::{Level, Node, Pin};
+use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
 use crate::simulate::{SimulateOptions, simulate};
 use faer::linalg::solvers::DenseSolveCore;
@@ -165,9 +167,13 @@ fn levels_are_unknowns() {
 }
 
 /// The covariance of nodes and clocks from derivatives by differences and dense algebra, the receivers held by the inner
-/// constraint.
-fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
+/// constraint, with so many measured distances between receivers.
+fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model, taped: usize) {
     let (network, measured) = model.network::<D>(m, n);
+    let between = |network: &Network<D>, [a, b]: [usize; 2]| distance(network.receivers[a], network.receivers[b]);
+    let tape = |receivers| ReceiverDistance { receivers, value: between(&network, receivers), sigma: 0.5 * SIGMA };
+    let distances: Vec<ReceiverDistance> = [[0, 3], [5, 1], [2, 6]].into_iter().take(taped).map(tape).collect();
+    let measured = measured.with_distances(distances.clone());
     let observations = Observations::<D>::new(&measured, |_, _| true);
     let (reduced, sigma, step) = (observations.reduced(), SIGMA, 1e-5);
     let own_offsets = model.emissions == Emissions::Unknown;
@@ -189,9 +195,14 @@ fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
         network
     };
     let (first_prior, recorders) = (observations.len() + D * (D + 1) / 2, m.div_ceil(2));
-    let mut jacobian = Mat::<f64>::zeros(first_prior + 2 * recorders, size);
+    let first_taped = first_prior + 2 * recorders;
+    let mut jacobian = Mat::<f64>::zeros(first_taped + taped, size);
     for at in 0..size {
         let [above, below] = [step, -step].map(|by| moved(at, by));
+        for (k, known) in distances.iter().enumerate() {
+            let change = between(&above, known.receivers) - between(&below, known.receivers);
+            jacobian[(first_taped + k, at)] = change / (2.0 * step) * sigma / known.sigma;
+        }
         for (k, o) in observations.all().iter().enumerate() {
             jacobian[(k, at)] = (o.residual(&above) - o.residual(&below)) / (2.0 * step);
         }
@@ -237,9 +248,11 @@ fn agrees_with_differences<const D: usize>(m: usize, n: usize, model: Model) {
 }
 
 #[test]
-fn clocks_are_unknowns() {
+fn clocks_are_unknowns_and_distances_measurements() {
     for model in models().chain(expecting()) {
-        agrees_with_differences::<2>(8, 10, model);
-        agrees_with_differences::<3>(10, 13, model);
+        for taped in [0, 3] {
+            agrees_with_differences::<2>(8, 10, model, taped);
+            agrees_with_differences::<3>(10, 13, model, taped);
+        }
     }
 }
