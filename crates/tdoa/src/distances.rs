@@ -1,7 +1,6 @@
 //! Distances between receivers that were measured by themselves, such as taped ones or ranges between anchors.
 
 use crate::loss::{CAUCHY, Loss};
-use crate::network::Network;
 use crate::points::{dot, minus};
 
 /// Standard deviations beyond which a measured distance says nothing to least squares.
@@ -19,17 +18,17 @@ pub(crate) struct ReceiverDistance {
 }
 
 impl ReceiverDistance {
-    /// The unit vector from the first receiver to the second in a network, and the distance between them, metres.
-    pub(crate) fn ray<const D: usize>(&self, network: &Network<D>) -> ([f64; D], f64) {
+    /// The unit vector from the first receiver to the second, of all at these places, and the distance between them, metres.
+    pub(crate) fn ray<const D: usize>(&self, places: &[[f64; D]]) -> ([f64; D], f64) {
         let [a, b] = self.receivers;
-        let between = minus(network.receivers[b], network.receivers[a]);
+        let between = minus(places[b], places[a]);
         let d = dot(between, between).sqrt();
         (if d > 0.0 { between.map(|x| x / d) } else { [0.0; D] }, d)
     }
 
-    /// What was measured less the distance in a network, over the standard deviation.
-    pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
-        (self.value - self.ray(network).1) / self.sigma
+    /// What was measured less the distance between receivers at these places, over the standard deviation.
+    pub(crate) fn residual<const D: usize>(&self, places: &[[f64; D]]) -> f64 {
+        (self.value - self.ray(places).1) / self.sigma
     }
 
     /// The same distance, with at least this standard deviation.

@@ -284,7 +284,7 @@ impl<const D: usize> Observations<D> {
     /// That of distances with at least this standard deviation.
     fn soft_misfit(&self, network: &Network<D>, is_least_squares: bool, softest: f64) -> f64 {
         let cost = |known: &ReceiverDistance| {
-            ReceiverDistance::cost(known.softened(softest).residual(network), is_least_squares)
+            ReceiverDistance::cost(known.softened(softest).residual(&network.receivers), is_least_squares)
         };
         let of_clocks = self.clocks.prior().map_or(0.0, |prior| prior.misfit(network));
         self.distances.iter().fold(of_clocks, |sum, known| sum + cost(known))

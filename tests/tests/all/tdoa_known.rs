@@ -292,21 +292,22 @@ fn taped_distances_are_measurements() {
         d(2, 4) + 1.0
     );
     std::fs::write(&tape, list).expect("written");
-    let run = |options: &[&str]| {
+    let calibrated = |options: &[&str]| {
         let (found, message, status) =
             calibrate(&[&[text(&file), "--ranges", "--truth", text(&truth)], options].concat());
         assert_eq!(status, Some(0), "{message}");
-        (found.expect("JSON"), message)
+        found.expect("JSON")
     };
-    let (found, message) = run(&["--distances", text(&tape)]);
+    let found = calibrated(&["--distances", text(&tape)]);
     let taped = found["distances"].as_array().expect("list");
     let inliers: Vec<bool> = taped.iter().map(|known| known["inlier"].as_bool().expect("bool")).collect();
     assert_eq!(inliers, [true, true, false], "{found}");
     assert!((taped[0]["found"].as_f64().expect("number") - d(0, 3)).abs() < 0.004, "{found}");
-    assert!(message.contains("3 measured distances between receivers: 2 agree with the network"), "{message}");
+    let printed = run("tdoa", &["calibrate", text(&file), "--ranges", "--distances", text(&tape)]).stdout;
+    let printed = String::from_utf8(printed).expect("UTF-8");
+    assert!(printed.contains("3 measured distances between receivers: 2 agree with the network"), "{printed}");
     assert!(found["warnings"].to_string().contains("not used: r3-r5 (measured"), "{found}");
-    let (without, _) = run(&[]);
-    assert!(without.get("distances").is_none());
+    assert!(calibrated(&[]).get("distances").is_none());
 }
 
 /// Recorders of two channels whose clocks were started apart and drift: their offsets and rates, against those of the first.

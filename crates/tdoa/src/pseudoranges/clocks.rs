@@ -1,5 +1,6 @@
 //! What measurements say of clocks: times of sending, and recorders.
 
+use super::origin::TimeOrigin;
 use super::{MAX_MAGNITUDE, PseudorangeError, Pseudoranges, check_count};
 use crate::clocks::{Emissions, Recorders};
 use std::collections::HashMap;
@@ -75,6 +76,16 @@ impl Pseudoranges {
             *seen.entry(name).or_insert(next)
         };
         (0..self.receivers()).map(|i| number(self.recorder_name(i))).collect()
+    }
+
+    /// This matrix, of moments that count from here on; `None` for numbers.
+    pub(crate) fn with_origin(self, origin: Option<TimeOrigin>) -> Pseudoranges {
+        Pseudoranges { origin, ..self }
+    }
+
+    /// From when on measurements count, where they were read as moments.
+    pub(crate) fn origin(&self) -> Option<TimeOrigin> {
+        self.origin
     }
 
     /// This matrix with what is unknown of the recorders' clocks; `None` where all receivers share a clock.

@@ -1,7 +1,5 @@
 //! From when on measurements count that are moments.
 
-use super::Pseudoranges;
-
 /// What kind of moments they are: those of one kind can be subtracted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum TimeScale {
@@ -19,16 +17,4 @@ pub(crate) struct TimeOrigin {
     /// Since 1970, or since midnight.
     pub(crate) seconds: i64,
     pub(crate) scale: TimeScale,
-}
-
-impl Pseudoranges {
-    /// This matrix, of moments that count from here on; `None` for numbers.
-    pub(crate) fn with_origin(self, origin: Option<TimeOrigin>) -> Pseudoranges {
-        Pseudoranges { origin, ..self }
-    }
-
-    /// From when on measurements count, where they were read as moments.
-    pub(crate) fn origin(&self) -> Option<TimeOrigin> {
-        self.origin
-    }
 }

@@ -124,7 +124,7 @@ impl<const D: usize> Normal<D> {
         }
         for known in observations.distances() {
             let known = known.softened(softest);
-            let (u, e) = (known.ray(network).0, known.residual(network));
+            let (u, e) = (known.ray(&network.receivers).0, known.residual(&network.receivers));
             let w = weight * ReceiverDistance::weight(e, is_least_squares) / known.sigma.powi(2);
             for (i, towards) in known.receivers.into_iter().zip([1.0, -1.0]) {
                 let (rows, gradient) = &mut self.receiver_blocks[i];

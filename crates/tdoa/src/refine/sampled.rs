@@ -181,7 +181,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
         }
         let variance = self.sigma * self.sigma;
         for known in self.observations.distances() {
-            let (u, e) = (known.ray(&network).0, known.residual(&network));
+            let (u, e) = (known.ray(&network.receivers).0, known.residual(&network.receivers));
             cost += 2.0 * variance * ReceiverDistance::cost(e, true);
             let pull = variance * ReceiverDistance::weight(e, true) * e / known.sigma;
             let [a, b] = known.receivers;

@@ -109,7 +109,8 @@ pub(crate) fn validate<const D: usize>(
             }
             None => {
                 return bad(format!(
-                    "the distance of {a} and {b} has no standard deviation, which it needs beside other measurements; give one (a fourth                      column), or estimate the speed with it (--estimate-speed)"
+                    "the distance of {a} and {b} has no standard deviation, which it needs beside other measurements; give one (a fourth \
+                     column), or estimate the speed with it (--estimate-speed)"
                 ));
             }
         }

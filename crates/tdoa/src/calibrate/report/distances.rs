@@ -25,13 +25,13 @@ pub struct MeasuredDistance {
 impl<const D: usize> State<'_, D> {
     /// The measured distances beside those of the best network.
     pub(super) fn measured_distances(&self) -> Vec<MeasuredDistance> {
-        let best = &self.ranked[0].network;
+        let places = &self.ranked[0].network.receivers;
         let of = |known: &ReceiverDistance| MeasuredDistance {
             receivers: known.receivers.map(|i| self.measured.receiver_names()[i].clone()),
             measured: known.value,
             sigma: known.sigma,
-            found: known.ray(best).1,
-            inlier: !ReceiverDistance::is_wrong(known.residual(best)),
+            found: known.ray(places).1,
+            inlier: !ReceiverDistance::is_wrong(known.residual(places)),
         };
         self.observations.distances().iter().map(of).collect()
     }
@@ -39,8 +39,8 @@ impl<const D: usize> State<'_, D> {
     /// Whether half of the measured distances or more are wrong: then the measurements may be.
     pub(crate) fn distances_contradict(&self) -> bool {
         let all = self.observations.distances();
-        let best = &self.ranked[0].network;
-        let wrong = all.iter().filter(|known| ReceiverDistance::is_wrong(known.residual(best))).count();
+        let places = &self.ranked[0].network.receivers;
+        let wrong = all.iter().filter(|known| ReceiverDistance::is_wrong(known.residual(places))).count();
         wrong > 0 && 2 * wrong >= all.len()
     }
 
