@@ -1,0 +1,189 @@
+//! What there is in recordings: a look at every channel, before anything is made of them.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::error::ReadError;
+use crate::recording::Recording;
+
+/// Samples of each channel that are read at a time.
+const BLOCK: usize = 1 << 14;
+
+/// A channel of a recording.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct ChannelName {
+    /// Path of the file.
+    pub file: String,
+    /// Number of the channel in this file, from 1.
+    pub channel: usize,
+}
+
+/// What there is in one channel of a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ChannelSurvey {
+    /// Path of the file.
+    pub file: String,
+    /// Number of the channel in this file, from 1.
+    pub channel: usize,
+    /// Samples per second, Hz.
+    pub sample_rate: u32,
+    /// Length of what can be read, seconds.
+    pub seconds: f64,
+    /// Greatest amount of a sample; 1 is full scale.
+    pub peak: f64,
+    /// Root mean square of the samples; 1 is full scale.
+    pub rms: f64,
+    /// Share of the samples, 0 to 1, that are in runs of two or more at full scale, of one sign.
+    pub clipped: f64,
+    /// Number of samples that were infinite or no numbers; they count as 0.
+    pub non_finite: u64,
+    /// Whether all samples are the same, as of an input with nothing connected; also if there are none.
+    pub is_constant: bool,
+    /// The first channel before this one with the same samples at the same rate, bit by bit. `None` if there is none,
+    /// and for constant channels.
+    pub same_as: Option<ChannelName>,
+    /// Whether the file ends before its samples do: it was cut off, or copied in part.
+    pub is_truncated: bool,
+}
+
+/// Reads recordings to the end, block by block, and says what is in each channel: of the first file, of the second,
+/// and so on. Sample rates and lengths may differ.
+///
+/// # Errors
+/// For the first file that cannot be read, or is damaged.
+pub fn survey<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Result<Vec<ChannelSurvey>, ReadError> {
+    let (mut surveys, mut prints): (Vec<ChannelSurvey>, Vec<Print>) = (Vec::new(), Vec::new());
+    for path in paths {
+        let (of_file, of_prints) = survey_of(Recording::open(path)?)?;
+        for (mut survey, print) in of_file.into_iter().zip(of_prints) {
+            let same = prints.iter().position(|other| *other == print).filter(|_| !survey.is_constant);
+            let name = |other: &ChannelSurvey| ChannelName { file: other.file.clone(), channel: other.channel };
+            survey.same_as = same.and_then(|k| surveys.get(k)).map(name);
+            surveys.push(survey);
+            prints.push(print);
+        }
+    }
+    Ok(surveys)
+}
+
+/// By what channels are told to be the same: sample rate, number of samples, and a hash of 128 bits.
+#[derive(PartialEq)]
+struct Print(u32, u64, u128);
+
+fn survey_of(mut recording: Recording) -> Result<(Vec<ChannelSurvey>, Vec<Print>), ReadError> {
+    let mut tallies = vec![Tally::new(recording.full_scale()); recording.channels()];
+    let mut block = Vec::new();
+    while recording.read_block(BLOCK, &mut block)? > 0 {
+        for (tally, samples) in tallies.iter_mut().zip(&block) {
+            samples.iter().for_each(|&sample| tally.add(sample));
+        }
+    }
+    let rate = recording.sample_rate();
+    let surveys = tallies.iter().zip(recording.non_finite()).zip(1..);
+    let surveys = surveys.map(|((tally, &non_finite), channel)| ChannelSurvey {
+        file: recording.file().to_owned(),
+        channel,
+        sample_rate: rate,
+        seconds: tally.count as f64 / f64::from(rate),
+        peak: tally.peak.into(),
+        rms: (tally.squares / tally.count.max(1) as f64).sqrt(),
+        clipped: tally.clipped as f64 / tally.count.max(1) as f64,
+        non_finite,
+        is_constant: tally.is_constant,
+        same_as: None,
+        is_truncated: recording.is_truncated(),
+    });
+    let prints = tallies.iter().map(|tally| Print(rate, tally.count, tally.hash)).collect();
+    Ok((surveys.collect(), prints))
+}
+
+/// What is known of the samples so far.
+#[derive(Clone)]
+struct Tally {
+    full_scale: f32,
+    count: u64,
+    peak: f32,
+    squares: f64,
+    first: Option<f32>,
+    is_constant: bool,
+    clipped: u64,
+    /// Sign and length of the run at full scale that is not yet over.
+    run: (bool, u64),
+    hash: u128,
+}
+
+impl Tally {
+    fn new(full_scale: f32) -> Tally {
+        Tally {
+            full_scale,
+            count: 0,
+            peak: 0.0,
+            squares: 0.0,
+            first: None,
+            is_constant: true,
+            clipped: 0,
+            run: (false, 0),
+            hash: FNV_BASIS,
+        }
+    }
+
+    fn add(&mut self, sample: f32) {
+        self.count += 1;
+        self.peak = self.peak.max(sample.abs());
+        self.squares += f64::from(sample) * f64::from(sample);
+        self.is_constant &= *self.first.get_or_insert(sample) == sample;
+        if sample.abs() < self.full_scale {
+            self.run.1 = 0;
+        } else {
+            let is_negative = sample < 0.0;
+            self.run = (is_negative, if self.run.0 == is_negative { self.run.1 + 1 } else { 1 });
+            // The second sample makes the first one a clipped one too.
+            self.clipped += match self.run.1 {
+                1 => 0,
+                2 => 2,
+                _ => 1,
+            };
+        }
+        self.hash = (self.hash ^ u128::from(sample.to_bits())).wrapping_mul(FNV_PRIME);
+    }
+}
+
+// FNV-1a with 128 bits, of Fowler, Noll and Vo (RFC 9923), over samples in the place of bytes.
+const FNV_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+const FNV_PRIME: u128 = (1 << 88) + (1 << 8) + 0x3b;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tally(samples: &[f32]) -> Tally {
+        let mut tally = Tally::new(0.75);
+        samples.iter().for_each(|&sample| tally.add(sample));
+        tally
+    }
+
+    #[test]
+    fn runs_of_one_sign_at_full_scale_are_clipped() {
+        for (samples, clipped) in [
+            (&[][..], 0),
+            (&[1.0, 0.0, 1.0], 0),
+            (&[1.0, -1.0, 1.0], 0),
+            (&[0.75, 0.75, 0.0], 2),
+            (&[1.0, 1.0, 1.0, -1.0, -1.0, 0.7, 0.7], 5),
+        ] {
+            assert_eq!(tally(samples).clipped, clipped, "{samples:?}");
+        }
+    }
+
+    #[test]
+    fn one_other_sample_makes_another_channel() {
+        let samples = [0.5, 0.25, -0.5, 0.0];
+        let same = tally(&samples).hash;
+        assert_eq!(tally(&samples).hash, same);
+        assert_ne!(tally(&[0.5, 0.25, -0.5, f32::MIN_POSITIVE]).hash, same);
+        assert_ne!(tally(&[0.25, 0.5, -0.5, 0.0]).hash, same);
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of the crate from outside.
+
+mod bytes;
+mod flac;
+mod hostile;
+mod survey;
+mod wav;
