@@ -58,7 +58,10 @@ pub enum ReadError {
         problem: String,
     },
     /// Samples that cannot be decoded, although the file goes on.
-    #[error("{file}: is damaged {seconds:.3} s after its beginning ({problem}); copy it from the recorder again")]
+    #[error(
+        "{file}: is damaged {seconds:.3} s after its beginning ({problem}); copy it from the recorder again, \
+         or convert it with `flac -d`"
+    )]
     Damaged {
         /// The file.
         file: String,

@@ -1,22 +1,25 @@
-//! Recordings of sound: read block by block, and surveyed.
+//! Recordings of sound: read block by block, and surveyed; and simulated ones, in rooms with echoes.
 //!
 //! [`Recording`] reads WAV and FLAC of any length in little memory, and says clearly what is wrong with files that
 //! cannot be read. [`survey`] looks at every channel of several files: is it silent, clipped, cut off, the same as
-//! another one?
+//! another one? [`simulate_room`] makes recordings of which everything is known, and [`write_wav`] writes them.
 //!
 //! ```
+//! let mut options = sound::RoomOptions::default();
+//! options.microphones = sound::Placement::Random(2);
+//! options.sources = sound::Placement::Random(3);
+//! let simulated = sound::simulate_room(&options)?;
 //! # let folder = std::env::temp_dir().join(format!("sound-front-page-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder)?;
-//! # let path = folder.join("a.wav");
-//! # let mut bytes = b"RIFF\x2c\0\0\0WAVEfmt \x10\0\0\0\x01\0\x02\0\x40\x1f\0\0\0\x7d\0\0\x04\0\x10\0data\x08\0\0\0".to_vec();
-//! # bytes.extend(b"\0\x40\0\0\0\xc0\0\0");
-//! # std::fs::write(&path, bytes)?;
+//! # let path = folder.join("claps.wav");
+//! sound::write_wav(&path, 48000, &simulated.channels, sound::SampleFormat::Int24)?;
+//!
 //! let mut recording = sound::Recording::open(&path)?;
-//! println!("{} channels at {} Hz", recording.channels(), recording.sample_rate());
+//! assert_eq!((recording.channels(), recording.sample_rate()), (2, 48000));
 //! let mut block = Vec::new();
 //! while recording.read_block(4096, &mut block)? > 0 {
 //!     let first: &[f32] = &block[0];
-//!     assert_eq!(first, [0.5, -0.5]);
+//!     assert!(first.iter().all(|sample| sample.abs() < 0.6));
 //! }
 //! for channel in sound::survey([&path])? {
 //!     if channel.is_constant {
@@ -28,7 +31,9 @@
 //! ```
 //!
 //! Where to look: `recording` is the entry; `kind` tells what a file is, `wav` and `flac` read it, and `input` gives
-//! them its bytes.
+//! them its bytes. Rooms begin with room/simulation.rs: options are checked (`check`), points and times drawn
+//! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
+//! (`images`), each at its fraction of a sample (`kernel`).
 
 mod error;
 mod flac;
@@ -36,10 +41,14 @@ mod format;
 mod input;
 mod kind;
 mod recording;
+mod room;
 mod survey;
 mod wav;
+mod write;
 
 pub use error::ReadError;
 pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
 pub use recording::Recording;
+pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
 pub use survey::{ChannelName, ChannelSurvey, survey};
+pub use write::{SampleFormat, WriteError, write_wav};

@@ -36,7 +36,8 @@ pub struct ChannelSurvey {
     pub peak: f64,
     /// Root mean square of the samples; 1 is full scale.
     pub rms: f64,
-    /// Share of the samples, 0 to 1, that are in runs of two or more at full scale, of one sign.
+    /// Share of the samples, 0 to 1, that are in runs of two or more of one sign at full scale. Floats can be greater: if
+    /// `peak` is, these need not be clipped.
     pub clipped: f64,
     /// Number of samples that were infinite or no numbers; they count as 0.
     pub non_finite: u64,

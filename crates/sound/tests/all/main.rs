@@ -3,5 +3,7 @@
 mod bytes;
 mod flac;
 mod hostile;
+mod room;
 mod survey;
 mod wav;
+mod write;

@@ -157,6 +157,18 @@ fn sizes_of_64_bits() {
 }
 
 #[test]
+fn sizes_that_did_not_fit_their_32_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.wav");
+    // 400 bytes are said, and 4 GB more are there: nothing but a hole, which takes no space.
+    std::fs::write(&path, sized(436, 400, &[])).unwrap();
+    let file = std::fs::File::options().write(true).open(&path).unwrap();
+    file.set_len(44 + (1 << 32) + 400).unwrap();
+    let recording = Recording::open(&path).unwrap();
+    assert_eq!((recording.frames(), recording.is_truncated()), (Some((1 << 30) + 100), false));
+}
+
+#[test]
 fn numbers_that_are_none_become_zero() {
     let bytes: Vec<u8> = [1.0_f32, f32::NAN, f32::INFINITY, 0.5, f32::NEG_INFINITY, -2.0]
         .iter()

@@ -1,0 +1,18 @@
+//! Simulated recordings in a room with flat walls at right angles, a shoebox, by the image source method: J. B. Allen
+//! and D. A. Berkley, Image method for efficiently simulating small-room acoustics, J. Acoust. Soc. Am. 65, 1979.
+
+mod check;
+mod convolution;
+mod error;
+mod images;
+mod kernel;
+mod options;
+mod placement;
+mod response;
+mod simulation;
+mod walls;
+mod waveform;
+
+pub use error::RoomError;
+pub use options::{Decay, Placement, Recorder, RoomOptions, Sound};
+pub use simulation::{RoomRecording, RoomTruth, simulate_room};
