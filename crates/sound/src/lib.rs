@@ -33,7 +33,8 @@
 //! Where to look: `recording` is the entry; `kind` tells what a file is, `wav` and `flac` read it, and `input` gives
 //! them its bytes. Rooms begin with room/simulation.rs: options are checked (`check`), points and times drawn
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
-//! (`images`), each at its fraction of a sample (`kernel`).
+//! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
+//! in each channel (`edge`), delays between each two (`correlation`), and those that agree (`consistent`).
 
 mod error;
 mod flac;
@@ -43,6 +44,7 @@ mod kind;
 mod recording;
 mod room;
 mod survey;
+mod times;
 mod wav;
 mod write;
 
@@ -51,4 +53,5 @@ pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
 pub use recording::Recording;
 pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
 pub use survey::{ChannelName, ChannelSurvey, survey};
+pub use times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
 pub use write::{SampleFormat, WriteError, write_wav};

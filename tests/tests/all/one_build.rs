@@ -31,7 +31,7 @@ fn nothing_is_built_twice_in_one_target_directory() {
             strays.extend(own.difference(&all).map(|package| format!("--package {member}: {package}")));
         }
     };
-    compare("normal,build,dev", &["poly", "hc", "tdoa", "cli", "hc-cli", "tdoa-cli", "experiments", "xtask"]);
+    compare("normal,build,dev", &["poly", "hc", "tdoa", "sound", "cli", "hc-cli", "tdoa-cli", "experiments", "xtask"]);
     compare("normal,build", &["hc-cli", "tdoa-cli", "xtask", "tdoa-python"]);
     assert!(strays.is_empty(), "with other features than in the workspace:\n{}", strays.join("\n"));
 }

@@ -1,0 +1,18 @@
+//! Arrival times of one event in all channels.
+//!
+//! Each channel tells roughly when the event begins: where its envelope first rises well above the noise, the leading
+//! edge. What follows is compared between each two channels by generalised cross-correlation (C. H. Knapp and G. C.
+//! Carter, The generalized correlation method for estimation of time delay, IEEE Trans. Acoust. Speech Signal Process. 24,
+//! 1976), which has a peak for each pair of ways, echoes included. The times of all channels together are those that agree
+//! with a peak of each pair: wrong peaks of some pairs contradict the others.
+
+mod arrivals;
+mod consistent;
+mod correlation;
+mod edge;
+mod error;
+mod options;
+
+pub use arrivals::{Arrival, arrival_times};
+pub use error::TimeError;
+pub use options::{TimeOptions, Window};

@@ -1,0 +1,180 @@
+//! Arrival times from the parts of all channels in which an event is.
+
+use super::consistent::{Channel, Pair, consistent};
+use super::correlation::{Spectrum, first, peaks};
+use super::edge::{Edge, edge};
+use super::error::TimeError;
+use super::options::{TimeOptions, Window};
+
+/// How much more than is compared at last is compared first, and how often.
+const WIDER: f64 = 1.5;
+const PASSES: usize = 2;
+
+/// When an event begins in a channel.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Arrival {
+    /// Time by the recorder's clock, seconds. What all channels have in common is not determined better than the leading edge.
+    pub seconds: f64,
+    /// Standard deviation, seconds, from the noise and from how far the pairs of channels disagree.
+    pub sigma: f64,
+    /// Times that fit the other channels less well, as of echoes, likeliest first, seconds.
+    pub others: Vec<f64>,
+}
+
+/// The times at which an event begins in each channel, from the part of each in which it is; `None` for channels that have
+/// no such part, or in whose part nothing rises above the noise.
+///
+/// # Errors
+/// If an option is out of range, or the sample rate of a part is not from 100 Hz to 10 MHz.
+///
+/// ```
+/// let mut options = sound::RoomOptions::default();
+/// (options.microphones, options.sources) = (sound::Placement::Random(5), sound::Placement::Random(1));
+/// let made = sound::simulate_room(&options)?;
+/// // Half a second of each channel from half a second on: the clap comes after a second.
+/// let part = |samples: &Vec<f32>| samples[24_000..].iter().copied().take(48_000).collect::<Vec<f32>>();
+/// let parts: Vec<Vec<f32>> = made.channels.iter().map(part).collect();
+/// let window = |part| Some(sound::Window { samples: part, start: 0.5, sample_rate: 48_000.0 });
+/// let windows: Vec<_> = parts.iter().map(Vec::as_slice).map(window).collect();
+/// let found = sound::arrival_times(&windows, &sound::TimeOptions::default())?;
+/// let late = |k: usize| found[k].as_ref().map(|arrival| arrival.seconds - made.truth.arrivals[k][0]);
+/// let (first, second) = (late(0).unwrap(), late(1).unwrap());
+/// assert!((first - second).abs() < 2e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> Result<Vec<Option<Arrival>>, TimeError> {
+    options.validate()?;
+    if let Some(window) = windows.iter().flatten().find(|window| !(100.0..=1e7).contains(&window.sample_rate)) {
+        let range = "from 100 to 10,000,000 Hz";
+        return Err(TimeError::Option { name: "a sample rate", value: window.sample_rate, range });
+    }
+    let mut edges: Vec<Option<Edge>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
+    // An echo may have been the first to rise above the noise, or above its share of the loudest one.
+    let wide = TimeOptions { length: WIDER * options.length, before: WIDER * options.length / 2.0, ..options.clone() };
+    for _ in 0..PASSES {
+        let spectra = spectra(windows, &edges, &wide);
+        let found = compared(&spectra, &wide, true);
+        let delayed: Vec<(&Spectrum, f64)> =
+            spectra.iter().zip(&found).map(|((_, s), channel)| (s, channel.off)).collect();
+        let Some(sound) = Spectrum::common(&delayed) else { break };
+        for (k, spectrum) in &spectra {
+            if let (Some(edge), Some(delay)) = (&mut edges[*k], first(spectrum, &sound, &wide)) {
+                edge.seconds += delay;
+            }
+        }
+    }
+    let spectra = spectra(windows, &edges, options);
+    let mut all = vec![None; windows.len()];
+    for ((k, spectrum), channel) in spectra.iter().zip(compared(&spectra, options, false)) {
+        let Some(edge) = &edges[*k] else { continue };
+        let sigma = channel.spread.hypot(spectrum.deviation());
+        let others = channel.others.iter().map(|off| edge.seconds + off).collect();
+        all[*k] = Some(Arrival { seconds: edge.seconds + channel.off, sigma, others });
+    }
+    Ok(all)
+}
+
+/// The spectra of the channels that have an edge, with their places.
+fn spectra(windows: &[Option<Window<'_>>], edges: &[Option<Edge>], options: &TimeOptions) -> Vec<(usize, Spectrum)> {
+    let of = |k: usize| Some((k, Spectrum::new(windows[k].as_ref()?, edges[k].as_ref()?, options)));
+    (0..windows.len()).filter_map(of).collect()
+}
+
+/// What the pairs of channels say of each.
+fn compared(spectra: &[(usize, Spectrum)], options: &TimeOptions, are_edges_rough: bool) -> Vec<Channel> {
+    let mut pairs = Vec::new();
+    for (a, (_, first)) in spectra.iter().enumerate() {
+        for (b, (_, second)) in spectra.iter().enumerate().skip(a + 1) {
+            pairs.push(Pair { channels: [a, b], peaks: peaks(first, second, options) });
+        }
+    }
+    consistent(spectra.len(), &pairs, are_edges_rough)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Arrival, TimeOptions, Window, arrival_times};
+    use crate::{Placement, RoomOptions, simulate_room};
+
+    /// Seconds of a channel before and after the direct sound at the first microphone that hears it.
+    const BEFORE: f64 = 0.05;
+    const AFTER: f64 = 0.1;
+
+    /// How far the arrivals of all events are from the truth, but for what those of an event have in common, seconds.
+    fn errors(options: &RoomOptions) -> Vec<(f64, Option<Arrival>)> {
+        let made = simulate_room(options).unwrap();
+        let rate = f64::from(made.sample_rate);
+        let mut errors = Vec::new();
+        for j in 0..made.truth.times.len() {
+            let truth: Vec<f64> = made.truth.arrivals.iter().map(|all| all[j]).collect();
+            let first = truth.iter().copied().fold(f64::INFINITY, f64::min);
+            let (begin, end) = (((first - BEFORE) * rate) as usize, ((first + AFTER) * rate) as usize);
+            let windows: Vec<Option<Window<'_>>> = (made.channels.iter())
+                .map(|samples| {
+                    let samples = &samples[begin..end];
+                    Some(Window { samples, start: begin as f64 / rate, sample_rate: rate })
+                })
+                .collect();
+            let found = arrival_times(&windows, &TimeOptions::default()).unwrap();
+            let off = |(found, truth): (&Option<Arrival>, &f64)| found.as_ref().map(|found| found.seconds - truth);
+            let mut all: Vec<f64> = found.iter().zip(&truth).filter_map(off).collect();
+            all.sort_by(f64::total_cmp);
+            let middle = all[all.len() / 2];
+            errors.extend(found.iter().zip(&truth).map(|(found, truth)| {
+                (found.as_ref().map_or(f64::INFINITY, |found| (found.seconds - truth - middle).abs()), found.clone())
+            }));
+        }
+        errors
+    }
+
+    /// Errors in seconds of the arrivals at ten microphones in two rooms, eight claps each, in ascending order.
+    fn in_rooms(reverberation: f64, signal_to_noise: f64) -> Vec<f64> {
+        let mut all = Vec::new();
+        for seed in 0..2 {
+            let mut options = RoomOptions::default();
+            (options.microphones, options.sources) = (Placement::Random(10), Placement::Random(8));
+            (options.reverberation, options.signal_to_noise) = (reverberation, Some(signal_to_noise));
+            options.seed = seed;
+            all.extend(errors(&options).into_iter().map(|(error, _)| error));
+        }
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    /// The bounds are those that a program must keep to bring a network of microphones to millimetres.
+    #[test]
+    fn claps_in_a_room_are_told_to_microseconds() {
+        for (reverberation, signal_to_noise) in [(0.2, 20.0), (0.4, 20.0), (0.7, 20.0), (0.4, 10.0)] {
+            let all = in_rooms(reverberation, signal_to_noise);
+            let near = all.iter().filter(|error| **error < 30e-6).count();
+            let said = format!(
+                "{reverberation} s, {signal_to_noise} dB: {near} of {}, median {:e}",
+                all.len(),
+                all[all.len() / 2]
+            );
+            assert!(near as f64 >= 0.98 * all.len() as f64 && all[all.len() / 2] < 2e-6, "{said}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_heard_in_silence_and_noise() {
+        let options = TimeOptions::default();
+        let (silence, short) = (vec![0.0; 9600], vec![0.5; 3]);
+        let mut made = RoomOptions::default();
+        (made.microphones, made.sources) = (Placement::Random(2), Placement::Random(1));
+        (made.first, made.duration, made.signal_to_noise) = (3.0, Some(4.0), Some(20.0));
+        let made = simulate_room(&made).unwrap();
+        let noise: Vec<&[f32]> = made.channels.iter().map(|samples| &samples[..9600]).collect();
+        for parts in [vec![&silence[..], &silence[..]], vec![&short[..], &[]], noise] {
+            let window = |samples| Some(Window { samples, start: 0.0, sample_rate: 48_000.0 });
+            let windows: Vec<Option<Window<'_>>> = parts.into_iter().map(window).chain([None]).collect();
+            assert_eq!(arrival_times(&windows, &options), Ok(vec![None; 3]));
+        }
+        assert_eq!(arrival_times(&[], &options), Ok(Vec::new()));
+        let wrong = TimeOptions { length: 1e9, ..options.clone() };
+        assert!(arrival_times(&[], &wrong).unwrap_err().to_string().contains("length"));
+        let slow = [Some(Window { samples: &[], start: 0.0, sample_rate: f64::NAN })];
+        assert!(arrival_times(&slow, &options).unwrap_err().to_string().contains("sample rate"));
+    }
+}

@@ -1,0 +1,75 @@
+//! Where a channel rises above its noise.
+
+use super::options::{TimeOptions, Window};
+use std::f64::consts::TAU;
+
+/// Time over which the envelope is a mean, seconds.
+const SMOOTHED: f64 = 2e-4;
+
+/// How much larger than the median of the envelope its top must be: the mean of ten squares of noise is 1.8 times in amplitude
+/// at most among a thousand.
+const HEARD: f64 = 2.2;
+
+/// Share of its top that counts as an edge in any case.
+const TOP: f64 = 0.6;
+
+/// The leading edge of an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    /// By the recorder's clock, seconds.
+    pub(super) seconds: f64,
+    /// Standard deviation of the samples before it.
+    pub(super) noise: f64,
+}
+
+/// The leading edge in a window; `None` where nothing is well above the noise.
+pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<Edge> {
+    let (low, rate) = (options.band[0], window.sample_rate);
+    let filtered = high_pass(window.samples, low / rate);
+    let width = ((SMOOTHED * rate).round() as usize).max(1);
+    let envelope = envelope(&filtered, width);
+    let (top, largest) =
+        envelope.iter().copied().enumerate().fold((0, 0.0), |best, (k, e)| if e > best.1 { (k, e) } else { best });
+    let mut before: Vec<f64> = envelope[..top].to_vec();
+    before.sort_by(f64::total_cmp);
+    let noise = before.get(before.len() / 2).copied()?;
+    if largest < HEARD * noise {
+        return None;
+    }
+    // Of a sound that hardly rises above the noise the top is what can be told.
+    let limit = (options.edge_over_noise * noise).min(TOP * largest).max(options.edge_share * largest);
+    let first = envelope.iter().position(|e| *e > limit)?;
+    // Between two samples the envelope is a line.
+    let (below, above) = (envelope[first.checked_sub(1)?], envelope[first]);
+    let place = first as f64 - (above - limit) / (above - below).max(f64::MIN_POSITIVE);
+    // The envelope is late by half of its width.
+    let place = place.max(0.0) - 0.5 * (width as f64 - 1.0);
+    Some(Edge { seconds: window.start + place / rate, noise })
+}
+
+/// Samples without what is below a frequency, which is a share of the sample rate: a Butterworth filter of second order by
+/// the bilinear transform.
+fn high_pass(samples: &[f32], frequency: f64) -> Vec<f64> {
+    let t = (0.5 * TAU * frequency.clamp(1e-6, 0.49)).tan();
+    let scale = 1.0 / (1.0 + std::f64::consts::SQRT_2 * t + t * t);
+    let (p, q) = (2.0 * (t * t - 1.0) * scale, (1.0 - std::f64::consts::SQRT_2 * t + t * t) * scale);
+    let (mut x1, mut x2, mut y1, mut y2) = (0.0, 0.0, 0.0, 0.0);
+    let step = |x: &f32| {
+        let x = f64::from(*x);
+        let y = scale * (x - 2.0 * x1 + x2) - p * y1 - q * y2;
+        (x2, x1, y2, y1) = (x1, x, y1, y);
+        y
+    };
+    samples.iter().map(step).collect()
+}
+
+/// Root of the mean square over the last `width` samples.
+fn envelope(samples: &[f64], width: usize) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mean = |k: usize| {
+        sum += samples[k].powi(2) - if k >= width { samples[k - width].powi(2) } else { 0.0 };
+        // Differences of sums may be below zero by rounding.
+        (f64::max(sum, 0.0) / width as f64).sqrt()
+    };
+    (0..samples.len()).map(mean).collect()
+}
