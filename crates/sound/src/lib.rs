@@ -2,7 +2,7 @@
 //!
 //! [`Recording`] reads WAV and FLAC of any length in little memory, and says clearly what is wrong with files that
 //! cannot be read. [`survey`] looks at every channel of several files: is it silent, clipped, cut off, the same as
-//! another one? [`simulate_room`] makes recordings of which everything is known, and [`write_wav`] writes them.
+//! another one? [`find_events`] finds the claps in them, and which channel hears them when. [`simulate_room`] makes recordings of which everything is known, and [`write_wav`] writes them.
 //!
 //! ```
 //! let mut options = sound::RoomOptions::default();
@@ -34,9 +34,11 @@
 //! them its bytes. Rooms begin with room/simulation.rs: options are checked (`check`), points and times drawn
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
-//! in each channel (`edge`), delays between each two (`correlation`), and those that agree (`consistent`).
+//! in each channel (`edge`), delays between each two (`correlation`), and those that agree (`consistent`). Events
+//! begin with events/find.rs.
 
 mod error;
+mod events;
 mod flac;
 mod format;
 mod input;
@@ -49,6 +51,10 @@ mod wav;
 mod write;
 
 pub use error::ReadError;
+pub use events::{
+    ChannelSamples, DropReason, DroppedEvent, Event, EventChannel, EventError, EventOptions, EventSamples,
+    EventWindows, Events, Onset, event_windows, find_events,
+};
 pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
 pub use recording::Recording;
 pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};

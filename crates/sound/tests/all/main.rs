@@ -1,6 +1,7 @@
 //! Tests of the crate from outside.
 
 mod bytes;
+mod events;
 mod flac;
 mod hostile;
 mod room;

@@ -1,0 +1,85 @@
+//! Events are found.
+
+use std::path::Path;
+
+use crate::recording::Recording;
+
+use super::error::EventError;
+use super::event::{EventChannel, Events, Onset};
+use super::file::file_onsets;
+use super::grouping::{Grouped, group};
+use super::options::EventOptions;
+
+/// Samples of each channel that are read at a time.
+const BLOCK: usize = 1 << 14;
+
+/// Finds sounds in recordings that began together and have one clock, such as the files of one recorder: a pass over each
+/// file, block by block. Channels are numbered over all files in their order; sample rates and lengths may differ.
+///
+/// In each channel a sound begins where, within 5 ms, the level in the band rises over the threshold and to twice what it
+/// was in the 50 ms before. Onsets within the time that sound takes over the extent are one event, if enough channels have
+/// one. Two sounds must be further apart than the dead time. A sound in the first 50 ms of a recording is not found.
+///
+/// # Errors
+/// If an option is out of its range, there are too few channels, a sample rate is too low for the band, or a file cannot be
+/// read.
+///
+/// ```
+/// let mut options = sound::RoomOptions::default();
+/// options.sources = sound::Placement::Random(3);
+/// let simulated = sound::simulate_room(&options)?;
+/// # let folder = std::env::temp_dir().join(format!("sound-events-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// # let path = folder.join("claps.wav");
+/// sound::write_wav(&path, 48000, &simulated.channels, sound::SampleFormat::Int24)?;
+///
+/// let found = sound::find_events([&path], &sound::EventOptions::default())?;
+/// assert_eq!(found.events.len(), 3);
+/// for samples in sound::event_windows([&path], &found)? {
+///     let samples = samples?;
+///     let event = &found.events[samples.event];
+///     println!("{:.3} s: {} samples", event.seconds, samples.channels[0].samples.len());
+/// }
+/// for dropped in &found.dropped {
+///     eprintln!("{dropped}");
+/// }
+/// # std::fs::remove_dir_all(folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn find_events<P: AsRef<Path>>(
+    paths: impl IntoIterator<Item = P>,
+    options: &EventOptions,
+) -> Result<Events, EventError> {
+    options.validate()?;
+    // All are opened first: what is wrong with the last one is said before the first one is read.
+    let recordings = Recording::open_all(paths)?;
+    let found = recordings.iter().map(Recording::channels).sum();
+    if recordings.is_empty() {
+        return Err(EventError::NoRecordings);
+    }
+    if found < options.least_channels {
+        return Err(EventError::Channels { found, least: options.least_channels });
+    }
+    let (mut channels, mut onsets): (Vec<EventChannel>, Vec<Vec<Onset>>) = (Vec::new(), Vec::new());
+    for recording in recordings {
+        let heard = file_onsets(recording, options, BLOCK)?;
+        for (of_channel, number) in heard.channels.into_iter().zip(1..) {
+            channels.push(EventChannel {
+                file: heard.file.clone(),
+                channel: number,
+                sample_rate: heard.sample_rate,
+                heard: of_channel.len(),
+                used: 0,
+                echoes: 0,
+                dropped: 0,
+            });
+            onsets.push(of_channel);
+        }
+    }
+    let Grouped { events, dropped, uses } = group(&onsets, options);
+    for (channel, (used, echoes)) in channels.iter_mut().zip(uses) {
+        (channel.used, channel.echoes) = (used, echoes);
+        channel.dropped = channel.heard.saturating_sub(used + echoes);
+    }
+    Ok(Events { events, channels, dropped })
+}
