@@ -20,6 +20,9 @@ const SHARE: f32 = 0.25;
 /// begin no sound.
 const RISE: f32 = 2.0;
 
+/// Least level of an onset, over the floor, unless the threshold itself is lower: noise seldom reaches it.
+const ABOVE: f32 = 2.0;
+
 /// Finds onsets in levels that come one by one. What it holds does not grow but by 4 bytes for each hundredth of the time
 /// of the noise floor.
 pub(super) struct Detector {
@@ -102,7 +105,8 @@ impl Detector {
         let level = *self.levels.get(bin.checked_sub(self.first)?)?;
         let is_over = self.last.is_none_or(|(last, _)| bin > last + self.ahead);
         // The beginning of a sound may fill a part of a bin.
-        if !is_over || level < floor * self.threshold / 2.0 {
+        let least = (self.threshold / 2.0).max(ABOVE.min(self.threshold));
+        if !is_over || level < floor * least {
             return None;
         }
         let peak = self.greatest(bin..bin + self.ahead + 1);

@@ -19,6 +19,7 @@ pub struct EventOptions {
     /// last for more than three quarters of this time become noise. Default 10.
     pub floor_seconds: f64,
     /// How many times as strong as the noise floor a sound must become, in amplitude: 1.5 to 10^6. Default 6, which is 16 dB.
+    /// In even noise 3 is enough, and finds claps that are 6 dB weaker.
     pub threshold: f64,
     /// How much weaker than the strongest sound of the event in the same channel the direct sound may be, dB: 0 to 100. The
     /// first onset that is not weaker counts; those before it are taken to be none. Default 15.

@@ -133,6 +133,29 @@ fn noise_that_grows_is_followed() {
 }
 
 #[test]
+fn clicks_in_single_channels_are_dropped_one_by_one() {
+    for seed in 0..2 {
+        let mut recording = simulated(&small_room(8, seed));
+        let rate = f64::from(recording.sample_rate);
+        // Claps are 1.2 s apart or more, the last one is more than a second before the end.
+        let clicks: Vec<f64> = recording.truth.times.iter().map(|time| time + 0.7).collect();
+        for (k, &click) in clicks.iter().enumerate() {
+            let begin = (click * rate) as usize;
+            let sound = noise(seed * 10 + k as u64, 0.3, 50);
+            recording.channels[k % 3][begin..begin + 50].copy_from_slice(&sound);
+        }
+        let events = heard(&recording);
+        assert_all(&events, &recording, 10);
+        assert_eq!(events.dropped.len(), clicks.len());
+        for (dropped, click) in events.dropped.iter().zip(clicks) {
+            assert_eq!(dropped.reason, DropReason::TooFewChannels { heard: 1, least: 4 });
+            assert!((dropped.seconds - click).abs() < CLOSE);
+        }
+        assert_eq!(events.channels.iter().map(|channel| channel.dropped).sum::<usize>(), 8);
+    }
+}
+
+#[test]
 fn a_clap_that_three_channels_hear_is_dropped_and_said() {
     for seed in 0..2 {
         let mut recording = simulated(&small_room(3, seed));
