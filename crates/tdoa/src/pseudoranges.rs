@@ -2,6 +2,7 @@
 
 mod clocks;
 mod error;
+#[cfg(feature = "csv")]
 mod origin;
 
 pub use error::{MAX_CELLS, MAX_MAGNITUDE, PseudorangeError};
@@ -11,6 +12,7 @@ use crate::cells::Cells;
 use crate::clocks::{Emissions, Recorders};
 use crate::distances::{self, ReceiverDistance};
 use crate::median::median;
+#[cfg(feature = "csv")]
 pub(crate) use origin::{TimeOrigin, TimeScale};
 
 /// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
@@ -44,6 +46,7 @@ pub struct Pseudoranges {
     /// When each transmitter sends, by a clock of their own, metres.
     emission_times: Option<Vec<f64>>,
     /// From when on measurements count, where they were read as moments.
+    #[cfg(feature = "csv")]
     origin: Option<TimeOrigin>,
     /// The recorder of each receiver, by name; names of receivers tell where nothing is said.
     recorders: Option<Vec<String>>,
@@ -110,6 +113,7 @@ impl Pseudoranges {
             receivers_named: false,
             emissions: Emissions::Unknown,
             emission_times: None,
+            #[cfg(feature = "csv")]
             origin: None,
             recorders: None,
             unknown_clocks: None,
@@ -431,6 +435,7 @@ impl Pseudoranges {
             emissions: self.emissions,
             emission_times: self.emission_times.as_ref().map(|all| transmitters.iter().map(|&j| all[j]).collect()),
             recorders: self.recorders.as_ref().map(|all| receivers.iter().map(|&i| all[i].clone()).collect()),
+            #[cfg(feature = "csv")]
             origin: self.origin,
             unknown_clocks: self.unknown_clocks.as_ref().map(|all| all.select(receivers, transmitters)),
             distances: distances::select(&self.distances, receivers),

@@ -1,5 +1,6 @@
 //! What measurements say of clocks: times of sending, and recorders.
 
+#[cfg(feature = "csv")]
 use super::origin::TimeOrigin;
 use super::{MAX_MAGNITUDE, PseudorangeError, Pseudoranges, check_count};
 use crate::clocks::{Emissions, Recorders};
@@ -79,11 +80,13 @@ impl Pseudoranges {
     }
 
     /// This matrix, of moments that count from here on; `None` for numbers.
+    #[cfg(feature = "csv")]
     pub(crate) fn with_origin(self, origin: Option<TimeOrigin>) -> Pseudoranges {
         Pseudoranges { origin, ..self }
     }
 
     /// From when on measurements count, where they were read as moments.
+    #[cfg(feature = "csv")]
     pub(crate) fn origin(&self) -> Option<TimeOrigin> {
         self.origin
     }
