@@ -6,7 +6,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::events::{EventError, EventOptions, Events, event_windows, find_events};
+use crate::events::{EventChannel, EventError, EventOptions, Events, event_windows, find_events};
 use crate::times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
 
 /// Seconds before an onset that tell the noise, and after it that are looked at.
@@ -93,18 +93,17 @@ impl Heard {
     pub fn names(&self) -> Vec<String> {
         let stem =
             |file: &str| Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
-        let mut files: Vec<&str> = self.events.channels.iter().map(|channel| channel.file.as_str()).collect();
-        files.dedup();
-        let stems: HashSet<String> = files.iter().map(|file| stem(file)).collect();
+        // Each file has a first channel; one that is given twice is two.
+        let files: Vec<&EventChannel> = self.events.channels.iter().filter(|channel| channel.channel == 1).collect();
+        let stems: HashSet<String> = files.iter().map(|channel| stem(&channel.file)).collect();
         let is_told = stems.len() == files.len();
         let mut place = 0;
-        let name = |(k, channel): (usize, &crate::EventChannel)| {
-            let channels = &self.events.channels;
-            place += usize::from(k == 0 || channels[k - 1].file != channel.file);
+        let name = |channel: &EventChannel| {
+            place += usize::from(channel.channel == 1);
             let stem = stem(&channel.file).replace([',', '"', '\n'], " ");
             if is_told { format!("{stem}:{}", channel.channel) } else { format!("{place} {stem}:{}", channel.channel) }
         };
-        self.events.channels.iter().enumerate().map(name).collect()
+        self.events.channels.iter().map(name).collect()
     }
 
     /// A table of the arrivals, one a line: `receiver,event,time_s,sigma_s`, with [names](Heard::names) of channels, numbers
@@ -144,6 +143,11 @@ mod tests {
         let heard = listen(&paths, &ListenOptions::default()).unwrap();
         assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (8, 0));
         assert_eq!(heard.names()[4..6], ["left:5", "right:1"]);
+        let mut twice = heard.clone();
+        twice.events.channels[5..]
+            .iter_mut()
+            .for_each(|channel| channel.file.clone_from(&heard.events.channels[0].file));
+        assert_eq!(twice.names()[4..6], ["1 left:5", "2 left:1"]);
         let mut errors = Vec::new();
         for (j, arrivals) in heard.arrivals.iter().enumerate() {
             let late = arrivals.iter().zip(&made.truth.arrivals);

@@ -59,16 +59,21 @@ pub(super) fn consistent(count: usize, pairs: &[Pair], are_edges_rough: bool) ->
 
 /// Weighted least squares of differences, channel by channel.
 fn relax(off: &mut [f64], chosen: &[([usize; 2], f64, f64)]) {
+    // Of each channel, the others that it is paired with, by how much it is later, and the weight.
+    let mut partners = vec![Vec::new(); off.len()];
+    for &([a, b], delay, weight) in chosen {
+        partners[a].push((b, delay, weight));
+        partners[b].push((a, -delay, weight));
+    }
     for _ in 0..SWEEPS {
-        let mut sums = vec![(0.0, 0.0); off.len()];
-        for k in 0..off.len() {
-            sums[k] = (0.0, 0.0);
-            for &([a, b], delay, weight) in chosen.iter().filter(|(channels, ..)| channels.contains(&k)) {
-                let wanted = if a == k { off[b] + delay } else { off[a] - delay };
-                sums[k] = (sums[k].0 + weight * wanted, sums[k].1 + weight);
+        for (k, partners) in partners.iter().enumerate() {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for &(other, delay, weight) in partners {
+                sum += weight * (off[other] + delay);
+                weights += weight;
             }
-            if sums[k].1 > 0.0 {
-                off[k] = sums[k].0 / sums[k].1;
+            if weights > 0.0 {
+                off[k] = sum / weights;
             }
         }
     }

@@ -154,7 +154,7 @@ fn all_peaks(a: &Spectrum, b: &Spectrum, options: &TimeOptions) -> Vec<Peak> {
     found
 }
 
-/// Where a falling function is zero, by halving: fifty times leave no bits.
+/// Where a falling function is zero, by halving: thirty times leave less than a picosecond of a millisecond.
 fn stationary(slope: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..30 {
         let middle = 0.5 * (low + high);

@@ -64,20 +64,20 @@ impl<'a, const D: usize> Weighing<'a, D> {
         Ok(network)
     }
 
-    /// One step of least squares with a weight for each measurement and what its residual should be;
-    /// `None` where it is not determined.
+    /// One step of least squares with a weight for each measurement and what its residual should be, where `deviation` is that
+    /// of measurements of weight 1; `None` where it is not determined.
     pub(crate) fn step(
         &mut self,
         network: &Network<D>,
         weights: &[f64],
         targets: &[f64],
+        deviation: f64,
     ) -> Result<Option<Network<D>>, Cancelled> {
         let descent = &mut self.descent;
         descent.look(network);
         let terms = |k: usize, e: f64| (weights[k], e - targets[k]);
         descent.normal.linearise_by(descent.observations, network, &descent.residuals, terms, |e| (1.0, e));
-        let square = descent.observations.deviation().powi(2);
-        descent.normal.add_known(descent.observations, network, square, false, 0.0);
+        descent.normal.add_known(descent.observations, network, deviation * deviation, false, 0.0);
         descent.trial.clone_from(network);
         Ok(descent.normal.solve(descent.observations, GAUGE, self.monitor)?.then(|| {
             descent.normal.step(descent.observations, network, &mut descent.trial);
@@ -103,5 +103,49 @@ impl<'a, const D: usize> Weighing<'a, D> {
     /// Residuals of the measurements where the last descent ended.
     pub(crate) fn residuals(&self) -> &[f64] {
         &self.descent.residuals[..self.descent.observations.len()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Weighing;
+    use crate::distances::ReceiverDistance;
+    use crate::network::Network;
+    use crate::observations::Observations;
+    use crate::{Emissions, SimulateOptions, simulate};
+    use hc::Monitor;
+
+    /// Steps end where what measurements of this deviation and a taped distance say together is likeliest.
+    #[test]
+    fn distances_count_beside_measurements_of_the_given_deviation() {
+        const DEVIATION: f64 = 0.1;
+        let mut made = SimulateOptions { receivers: 6, transmitters: 10, noise: DEVIATION, ..Default::default() };
+        made.emissions = Emissions::Known;
+        let made = simulate(&made).unwrap();
+        let taped = ReceiverDistance { receivers: [0, 3], value: 0.0, sigma: DEVIATION };
+        // A deviation too long.
+        let value = taped.ray(&made.network.receivers).1 + DEVIATION;
+        let measured = made.pseudoranges.with_emissions(Emissions::Known);
+        let measured = measured.with_distances(vec![ReceiverDistance { value, ..taped }]);
+        let observations = Observations::<2>::new(&measured, |_, _| true);
+        let (weights, targets) = (vec![1.0; observations.len()], vec![0.0; observations.len()]);
+        let monitor = Monitor::default();
+        let mut weighing = Weighing::new(&observations, &monitor);
+        let mut network = made.network.clone();
+        for _ in 0..60 {
+            network = weighing.step(&network, &weights, &targets, DEVIATION).unwrap().unwrap();
+        }
+        let cost = |network: &Network| {
+            let squares: f64 = observations.all().iter().map(|o| o.residual(network).powi(2)).sum();
+            0.5 * squares / DEVIATION.powi(2) + observations.misfit(network, false)
+        };
+        let least = cost(&network);
+        for (i, axis) in (0..6).flat_map(|i| [(i, 0), (i, 1)]) {
+            for by in [-1e-4, 1e-4] {
+                let mut moved = network.clone();
+                moved.receivers[i][axis] += by;
+                assert!(cost(&moved) > least, "{i} {axis} {by}");
+            }
+        }
     }
 }

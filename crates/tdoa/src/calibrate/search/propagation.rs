@@ -57,11 +57,12 @@ pub(crate) fn propagated<const D: usize>(
     for _ in 0..TURNS {
         check(monitor)?;
         let weights: Vec<f64> = sites.iter().map(|site| site.0).collect();
-        let trusted = observations.trusted(&weights);
+        let trusted = observations.trusted(&weights).at_deviation(mixture.deviation);
         let Some(variances) = predicted_variances(&trusted, &network, monitor)? else { return Ok(None) };
         if moves {
             let targets: Vec<f64> = sites.iter().map(|site| site.1).collect();
-            let Some(next) = weighing.step(&network, &weights, &targets)?.filter(Network::is_finite) else {
+            let Some(next) = weighing.step(&network, &weights, &targets, mixture.deviation)?.filter(Network::is_finite)
+            else {
                 return Ok(None);
             };
             network = next;
