@@ -35,7 +35,7 @@
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
 //! in each channel (`edge`), delays between each two (`correlation`), and those that agree (`consistent`). Events
-//! begin with events/find.rs, and `listen` puts both together.
+//! begin with events/find.rs, and `listen` puts both together; `picture` draws them.
 
 mod error;
 mod events;
@@ -44,6 +44,7 @@ mod format;
 mod input;
 mod kind;
 mod listen;
+mod picture;
 mod recording;
 mod room;
 mod survey;
@@ -58,6 +59,7 @@ pub use events::{
 };
 pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
 pub use listen::{Heard, ListenError, ListenOptions, listen};
+pub use picture::{Trace, spectrogram, waveforms};
 pub use recording::Recording;
 pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
 pub use survey::{ChannelName, ChannelSurvey, survey};
