@@ -148,6 +148,17 @@ pub fn json_list<T: Serialize>(path: &Path, values: &[T]) -> Result<(), Failure>
     json_of(path, &all)
 }
 
+/// Prints a result as JSON in a line of its own, at once.
+///
+/// # Errors
+/// Those of [`print()`].
+pub fn json_line(value: &impl Serialize) -> Result<(), Failure> {
+    print_by(|out| {
+        serde_json::to_writer(&mut *out, &Numbered { format: FORMAT, value })?;
+        out.write_all(b"\n")
+    })
+}
+
 fn json_of(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     if is_standard(path) {
         return print_by(|out| write_json(out, value));

@@ -13,8 +13,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, Node, ReceiverDelays,
-    Unfinished, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, LocateError, LocatedEvent, Locator,
+    MeasuredPosition, Node, Pseudoranges, ReceiverDelays, Unfinished, calibrate_with,
 };
 
 /// CalibrateSettings as Python gives them.
@@ -210,9 +210,13 @@ trait Shown {
     fn deviation(&self) -> String;
     fn magnification(&self) -> f64;
     fn has_systematic_errors(&self) -> bool;
+    fn located(&self, measured: &Pseudoranges, sigma: Option<f64>) -> Result<String, Failure>;
 }
 
-impl<const D: usize> Shown for Calibration<D> {
+impl<const D: usize> Shown for Calibration<D>
+where
+    LocatedEvent<D>: Serialize,
+{
     fn html(&self) -> String {
         tdoa::html::html(self)
     }
@@ -239,6 +243,14 @@ impl<const D: usize> Shown for Calibration<D> {
 
     fn has_systematic_errors(&self) -> bool {
         self.relevant_systematic().is_some()
+    }
+
+    fn located(&self, measured: &Pseudoranges, sigma: Option<f64>) -> Result<String, Failure> {
+        let locator = Locator::new(self, sigma).map_err(|error| match error {
+            LocateError::Distrust { .. } => Failure::Undetermined(error.to_string()),
+            other => Failure::input(other),
+        })?;
+        json::text(&locator.locate(measured).map_err(Failure::input)?)
     }
 }
 
@@ -321,6 +333,23 @@ where
         report.calibration.move_to_frame_of(&receivers);
     }
     json::text(&report)
+}
+
+/// The JSON of where transmitters are in the network of a calibration, from the JSON of that one.
+#[pyfunction]
+pub(crate) fn calibration_located(
+    json: &str,
+    table: Table<'_>,
+    sigma: Option<f64>,
+    recorders: Option<Vec<String>>,
+) -> PyResult<String> {
+    guarded(|| {
+        let mut measured = table.measured()?;
+        if let Some(recorders) = recorders {
+            measured = measured.with_recorders(recorders).map_err(Failure::input)?;
+        }
+        parsed(json)?.located(&measured, sigma)
+    })
 }
 
 /// The standard deviation of the measurements in words, by how much ellipses are to be drawn larger

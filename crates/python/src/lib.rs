@@ -22,8 +22,8 @@ mod work;
 mod _native {
     #[pymodule_export]
     use crate::calibration::{
-        calibrate, calibration_compared, calibration_html, calibration_nodes, calibration_style, calibration_summary,
-        calibration_svg,
+        calibrate, calibration_compared, calibration_html, calibration_located, calibration_nodes, calibration_style,
+        calibration_summary, calibration_svg,
     };
     #[pymodule_export]
     use crate::certify::{certify, mixed_volume};

@@ -567,3 +567,28 @@ def test_recorders_with_clocks_of_their_own(programs, tmp_path):
     assert np.ptp(constant.offsets) == 0 and not constant.clocks.any()
     found = tdoa.calibrate(constant.pseudoranges, clocks=tdoa.Clocks(emissions="constant"))
     assert found.clocks == [] and found.data["emissions"] == "constant" and np.ptp(found.offsets) == 0
+
+
+def test_new_transmitters_are_located():
+    made = tdoa.simulate(10, 40, dimensions=3, noise=0.01, seed=2)
+    names = [f"mic{i}" for i in range(10)]
+    network = tdoa.calibrate(made.pseudoranges[:, :30], dimensions=3, names=names).compared(made.receivers)
+    new = made.pseudoranges[:, 30:].copy()
+    # The last receiver mistakes one, another is heard by three.
+    new[9, 2] += 4.0
+    new[3:, 5] = np.nan
+    places = network.locate(new, names=names)
+    assert [place.heard for place in places] == [10, 10, 10, 10, 10, 3, 10, 10, 10, 10]
+    for j, place in enumerate(places):
+        if j == 5:
+            assert "3 receivers" in place.problem and np.isnan(place.position).all() and not place.unique
+            continue
+        error = place.position - made.transmitters[30 + j]
+        # Beyond five deviations by chance once in a hundred thousand times.
+        assert error @ np.linalg.solve(place.covariance, error) < 31, (j, place)
+        assert place.fits and place.outliers == (["mic9"] if j == 2 else []), (j, place)
+    # Rows by name, in any order.
+    again = tdoa.Calibration.from_json(network.to_json()).locate(new[::-1], names=names[::-1])
+    assert [repr(place) for place in again] == [repr(place) for place in places]
+    with pytest.raises(hc.InputError, match="not in the network: other"):
+        network.locate(new, names=["other", *names[1:]])

@@ -5,6 +5,7 @@ mod clocks;
 mod frame;
 mod input;
 mod known;
+mod locate;
 mod partial;
 mod provenance;
 mod simulate;
@@ -37,6 +38,7 @@ enum Command {
     Calibrate(calibrate::Arguments),
     #[cfg(feature = "experiments")]
     Experiment(experiments::command::Arguments),
+    Locate(locate::Arguments),
     Simulate(simulate::Arguments),
     Solve(solve::Arguments),
 }
@@ -56,7 +58,7 @@ impl Program for Arguments {
         match &self.command {
             #[cfg(feature = "experiments")]
             Command::Experiment(arguments) => arguments.sharing(),
-            Command::Calibrate(_) | Command::Simulate(_) | Command::Solve(_) => None,
+            Command::Calibrate(_) | Command::Locate(_) | Command::Simulate(_) | Command::Solve(_) => None,
         }
     }
 
@@ -66,6 +68,7 @@ impl Program for Arguments {
             Command::Calibrate(arguments) => calibrate::run(arguments),
             #[cfg(feature = "experiments")]
             Command::Experiment(arguments) => experiments::command::run(arguments, ranks),
+            Command::Locate(arguments) => locate::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Solve(arguments) => solve::run(arguments),
         }

@@ -4,9 +4,10 @@
 
 use hc::poly::{counted, one_or};
 use std::array::from_fn;
-use std::fmt::Write;
 
 mod provenance;
+mod section;
+mod table;
 mod turn;
 
 use crate::calibrate::{Calibration, RecorderClock};
@@ -15,25 +16,21 @@ use crate::picture::{escape, picture};
 use crate::quantity::{coordinate, decimals, length, number};
 use crate::summary::{CLOCK_HEADINGS, agreement, choice, clock_model, clock_row, deviation, uniqueness};
 pub use provenance::Provenance;
+pub use section::{Section, page};
+use table::{Column, table};
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
 const LISTED: usize = 20_000;
 
-const STYLE: &str = include_str!("html/style.css");
-const SORT: &str = include_str!("html/sort.js");
-
-/// A column of a table: its heading, and whether it holds text instead of numbers.
-type Column = (&'static str, bool);
-
 /// The coordinates of a position, and what their deviations are called.
-const AXES: [[Column; 3]; 2] =
+const AXES: [[Column<'static>; 3]; 2] =
     [[("x", false), ("y", false), ("z", false)], [("std x", false), ("std y", false), ("std z", false)]];
 
-const OFFSET: [Column; 2] = [("offset", false), ("std offset", false)];
+const OFFSET: [Column<'static>; 2] = [("offset", false), ("std offset", false)];
 
-const COUNTS: [Column; 2] = [("measured", false), ("outliers", false)];
+const COUNTS: [Column<'static>; 2] = [("measured", false), ("outliers", false)];
 
-const MEASUREMENTS: [Column; 5] = [
+const MEASUREMENTS: [Column<'static>; 5] = [
     ("receiver", true),
     ("transmitter", true),
     ("residual", false),
@@ -48,14 +45,9 @@ pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
 
 /// The report as HTML text, with where the result comes from.
 pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) -> String {
-    let title = format!("Calibration of {}", escape(&calibration.configuration));
     // A network in the plane is all in the picture.
     let (view_style, view) = if D == 3 { (turn::STYLE, turn::view(calibration)) } else { ("", String::new()) };
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}{view_style}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
-    );
+    let mut page = String::new();
     if let Some(why) = calibration.distrust() {
         page += &format!("<p class=\"wrong\">Not to be trusted: {why}.</p>\n");
     }
@@ -92,8 +84,8 @@ pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Prov
         );
     }
     page += &table("measurements", &MEASUREMENTS, rows);
-    page += &format!("<script>\n{SORT}</script>\n</body>\n</html>\n");
-    page
+    provenance.sections.iter().for_each(|section| page += section.html());
+    section::frame(&format!("Calibration of {}", calibration.configuration), view_style, &page)
 }
 
 /// What the summary says, as a list of terms and values.
@@ -172,29 +164,9 @@ fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) 
 }
 
 /// The columns of a table of nodes; some stand after the deviations.
-fn columns<const D: usize>(kind: &'static str, after: &[Column]) -> Vec<Column> {
+fn columns<const D: usize>(kind: &'static str, after: &[Column<'static>]) -> Vec<Column<'static>> {
     let axes = AXES.iter().flat_map(|axes| axes.iter().take(D));
     [(kind, true)].iter().chain(axes).chain(after).chain(&COUNTS).copied().collect()
-}
-
-/// A table with a heading that sorts; cells are escaped here.
-fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let class = |text: bool| if text { " class=\"text\"" } else { "" };
-    let mut html = format!("<div class=\"scroll\"><table id=\"{id}\">\n<thead><tr>");
-    // Writing to a string does not fail.
-    for (name, text) in columns {
-        let _ = write!(html, "<th scope=\"col\"{}><button type=\"button\">{name}</button></th>", class(*text));
-    }
-    html += "</tr></thead>\n<tbody>\n";
-    for row in rows {
-        let outlier = row.last().is_some_and(|cell| cell == "outlier");
-        html += if outlier { "<tr class=\"outlier\">" } else { "<tr>" };
-        for (cell, (_, text)) in row.iter().zip(columns) {
-            let _ = write!(html, "<td{}>{}</td>", class(*text), escape(cell));
-        }
-        html += "</tr>\n";
-    }
-    html + "</tbody>\n</table></div>\n"
 }
 
 fn receivers<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {

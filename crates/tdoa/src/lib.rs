@@ -10,6 +10,7 @@
 //! * [`calibrate()`]: any network from real measurements, with outliers, gaps and noise. It returns
 //!   positions, uncertainty, other networks that explain the data as well, and what is wrong with
 //!   the data.
+//! * [`Locator`]: new transmitters in a network that is calibrated, each by itself.
 //! * [`minimal`]: every network that explains a small complete matrix exactly, by homotopy
 //!   continuation.
 //! * [`Pseudoranges`]: the measurements; [`read`] reads them from files.
@@ -62,6 +63,7 @@ mod flatness;
 mod generated;
 #[cfg(feature = "pictures")]
 pub mod html;
+pub mod locate;
 pub mod loss;
 mod median;
 pub mod minimal;
@@ -91,6 +93,7 @@ pub use calibrate::{
 pub use cells::Cells;
 pub use clocks::{Clocks, Emissions, ReceiverClocks};
 pub use hc::{Monitor, Progress};
+pub use locate::{LocateError, LocatedEvent, Locator, Place};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;
 pub use observations::Node;

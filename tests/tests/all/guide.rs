@@ -118,7 +118,7 @@ fn no_page_is_left_out() {
 fn calibrating_a_network() {
     let folder = tempfile::tempdir().expect("folder");
     let printed = run_page("docs/guide/calibrate-a-network.md", folder.path());
-    assert_eq!(printed.len(), 26);
+    assert_eq!(printed.len(), 27);
     for name in ["report.html", "network.json", "nodes.csv", "network.svg"] {
         assert!(folder.path().join(name).exists(), "{name}");
     }

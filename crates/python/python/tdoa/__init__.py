@@ -4,7 +4,7 @@ Synchronised receivers hear transmitters whose send times are unknown. With all 
 measures of transmitter j the pseudorange |r_i - s_j| + o_j. From these alone come the positions r and s and the offsets o, up to
 a rotation, reflection and translation of the plane, or of space.
 
-* `calibrate`: any network from measurements as they come, with outliers, gaps and noise.
+* `calibrate`: any network from measurements as they come, with outliers, gaps and noise; `locate` of the result places new transmitters in it.
 * `solve`: every network that explains a small complete table exactly.
 * `read`: measurements from files.
 * `simulate`, `cramer_rao`: networks with a known truth, and how near to it an estimate can come.
@@ -17,6 +17,7 @@ from hc import Error, InputError, InternalError, UndeterminedError, __version__
 from ._calibration import Alternative, Calibration
 from ._clocks import Clocks, RecorderClock
 from ._networks import Networks, Simulation, Unfinished, calibrate, cramer_rao, simulate, solve
+from ._place import Place
 from ._tables import Pseudoranges, read
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "InputError",
     "InternalError",
     "Networks",
+    "Place",
     "Pseudoranges",
     "RecorderClock",
     "Simulation",

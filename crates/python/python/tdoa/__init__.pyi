@@ -17,6 +17,7 @@ __all__ = [
     "InputError",
     "InternalError",
     "Networks",
+    "Place",
     "Pseudoranges",
     "RecorderClock",
     "Simulation",
@@ -100,6 +101,23 @@ class RecorderClock(NamedTuple):
     rate_std: float | None
     at: float | None
 
+class Place:
+    transmitter: str
+    heard: int
+    problem: str | None
+    position: _Floats
+    position_std: _Floats
+    covariance: _Floats
+    offset: float
+    offset_std: float
+    outliers: list[str]
+    redundancy: int
+    residual_rms: float
+    fits: bool
+    unique: bool
+    others: list[dict[str, Any]]
+    def __init__(self, data: dict[str, Any], dimensions: int) -> None: ...
+
 class Alternative:
     receivers: _Floats
     transmitters: _Floats
@@ -157,6 +175,15 @@ class Calibration:
         receivers: ArrayLike | Mapping[str, ArrayLike],
         transmitters: ArrayLike | Mapping[str, ArrayLike] | None = None,
     ) -> Calibration: ...
+    def locate(
+        self,
+        pseudoranges: _Table,
+        *,
+        sigma: ArrayLike | None = None,
+        speed: float | None = None,
+        names: _Names | None = None,
+        recorders: Iterable[str] | Mapping[str, str] | None = None,
+    ) -> list[Place]: ...
     # A DataFrame of pandas and an Axes of matplotlib, which need not be installed.
     def to_dataframe(self) -> Any: ...
     def plot(self, ax: Any = None, *, names: bool = True, view: Literal["xy", "xz", "yz", "3d"] = "xy") -> Any: ...

@@ -8,8 +8,9 @@ import numpy as np
 
 from hc import InputError, _native
 
-from ._clocks import RecorderClock
-from ._tables import real_matrix
+from ._clocks import RecorderClock, recorders_of
+from ._place import Place
+from ._tables import real_matrix, table
 
 
 class Alternative:
@@ -235,6 +236,50 @@ class Calibration:
         if rows.shape != (len(names), self.dimensions):
             raise InputError(f"true {kind} must have shape {(len(names), self.dimensions)}, not {rows.shape}")
         return [row.tolist() if np.isfinite(row).all() else None for row in rows]
+
+    def locate(self, pseudoranges, *, sigma=None, speed=None, names=None, recorders=None):
+        """Locate new transmitters in this network, each by itself.
+
+        Parameters
+        ----------
+        pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges
+            What the receivers measure of them, as in `calibrate`: by the same clocks and at the same assumed speed. Receivers are
+            known by their names, or by their order where they have none here.
+        sigma : float or array_like of shape (m, n), optional
+            Standard deviation of the measurements in metres; that of the calibration by default.
+        speed : float, optional
+            Propagation speed in metres a second that makes metres of times in seconds.
+        names : list of str, or (list of str, list of str), or dict with receivers and transmitters, optional
+            Names of the receivers, and of the transmitters.
+        recorders : sequence of str, or dict of receiver to recorder, optional
+            The recorder of each receiver, where recorders have clocks of their own, as in `calibrate`.
+
+        Returns
+        -------
+        list of Place
+            One for each transmitter: `position`, `covariance`, `outliers`, `unique`, `others`.
+
+        Raises
+        ------
+        hc.InputError
+            If a receiver is not in the network, or the measurements cannot be used.
+        hc.UndeterminedError
+            If this network is not to be trusted.
+
+        Examples
+        --------
+        >>> import tdoa
+        >>> made = tdoa.simulate(8, 30, noise=0.01, seed=1)
+        >>> network = tdoa.calibrate(made.pseudoranges[:, :20])
+        >>> places = network.locate(made.pseudoranges[:, 20:])
+        >>> len(places), places[0].unique
+        (10, True)
+        """
+        given, single, _ = table(pseudoranges, names, sigma, speed)
+        count = len(given["values"])
+        receivers = given["receivers"] or [f"r{i + 1}" for i in range(count)]
+        found = _native.calibration_located(self._text, given, single, recorders_of(recorders, receivers))
+        return [Place(place, self.dimensions) for place in json.loads(found)]
 
     def to_dataframe(self):
         """The nodes as a pandas.DataFrame, the table that `tdoa calibrate --nodes` writes.

@@ -92,7 +92,7 @@ def settings(clocks, ranges, receiver_delays, recorders, receivers, times, trans
         "receiver_clocks": "offset" if apart else clocks.receivers,
         "offset_sigma": number("offset_sigma", clocks.offset_sigma),
         "rate_sigma": number("rate_sigma", clocks.rate_sigma),
-        "recorders": list(receivers) if apart else _recorders(recorders, receivers),
+        "recorders": list(receivers) if apart else recorders_of(recorders, receivers),
     }
 
 
@@ -114,7 +114,7 @@ def _times(given, transmitters, factor):
     return [factor * time for time in times]
 
 
-def _recorders(given, receivers):
+def recorders_of(given, receivers):
     """The recorder of each receiver."""
     if given is None:
         return None

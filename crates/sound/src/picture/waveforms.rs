@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::escape;
+use super::escape::escape;
 use crate::events::ChannelSamples;
 
 /// Seconds that are drawn before the time at which channels are aligned, and after it.
@@ -67,7 +67,7 @@ pub fn waveforms(traces: &[Trace<'_>]) -> String {
     let x = |seconds: f64| NAMES + WIDTH * (seconds + BEFORE) / (BEFORE + AFTER);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\" \
-         class=\"waveforms\">\n"
+         class=\"waveforms\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
     );
     let bottom = height - 28.0;
     // Writing to a string does not fail.

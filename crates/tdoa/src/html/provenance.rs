@@ -2,6 +2,7 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use super::section::Section;
 use crate::picture::escape;
 use crate::quantity::number;
 
@@ -23,6 +24,8 @@ pub struct Provenance {
     pub settings: Vec<(String, String)>,
     /// Who chose between the plane and space, where the measurements did not: `as the anchors have it`.
     pub dimensions: Option<String>,
+    /// Parts of the page that show what the measurements come from, such as recordings; they stand last.
+    pub sections: Vec<Section>,
 }
 
 /// A list of terms and values; nothing where nothing is known.

@@ -2,10 +2,14 @@
 
 use crate::calibrate::state::State;
 use crate::degeneracy::list;
+use crate::quantity::length;
 use serde::{Deserialize, Serialize};
 
 /// Expected deviations of clocks beyond which a clock is no chance.
 const SURPRISING: f64 = 4.0;
+
+/// Rate that no clock of a recorder has, as a share: crystals keep to a tenth of it.
+const NO_CLOCK: f64 = 1e-3;
 
 /// The clock of a recorder, against that of the first one; where send times are known, its offset is against these, and where
 /// they [were given](crate::Pseudoranges::with_emission_times) its rate too.
@@ -55,5 +59,51 @@ impl<const D: usize> State<'_, D> {
                 list(&names)
             )
         })
+    }
+
+    /// Says so if the best network has clocks that run as no clock does: with too little time between events, rates stand for
+    /// distances, and the network shrinks.
+    pub(super) fn warn_of_rates(&self) -> Option<String> {
+        let recorders = self.measured.unknown_clocks().filter(|recorders| recorders.drift())?;
+        let clocks = recorders.taken().iter().zip(&self.ranked[0].network.clocks);
+        let rates = clocks.map(|(taken, clock)| recorders.rate(taken[1] + clock[1]));
+        let mut names: Vec<String> = (rates.enumerate())
+            .filter(|(_, rate)| rate.abs() > NO_CLOCK)
+            .map(|(i, _)| self.measured.recorder_name(i).to_string())
+            .collect();
+        names.dedup();
+        (!names.is_empty()).then(|| {
+            format!(
+                "clocks of recorders seem to run fast or slow by more than a thousandth, which no such clock does: {}; too little time \
+                 is measured to tell rates from distances (nine in ten readings are within {} of the middle one), or a sample rate \
+                 is wrong: take the rates to be the same (--receiver-clocks offset), say how large they may be (--rate-sigma 20), or \
+                 record for longer",
+                list(&names),
+                length(self.metre() * recorders.half())
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{CalibrateOptions, ReceiverClocks, SimulateOptions, calibrate, simulate};
+
+    /// Rates beside a recording of a few lengths of the room take the network away; with enough time, or with rates that clocks
+    /// have, they do not.
+    #[test]
+    fn too_little_time_for_rates_is_said() {
+        for (duration, rate_sigma, said) in [(20.0, None, true), (20.0, Some(2e-5), false), (2e5, None, false)] {
+            let mut made =
+                SimulateOptions { receivers: 8, transmitters: 20, noise: 0.01, seed: 3, ..Default::default() };
+            (made.delays, made.duration) = (100.0, Some(duration));
+            let made = simulate(&made).unwrap();
+            let mut options = CalibrateOptions::default();
+            (options.clocks.receivers, options.clocks.rate_sigma) = (ReceiverClocks::Rate, rate_sigma);
+            let found = calibrate(&made.pseudoranges, &options).unwrap();
+            let is_said = found.warnings.iter().any(|warning| warning.contains("--receiver-clocks offset"));
+            assert_eq!(is_said, said, "{duration} {rate_sigma:?}: {:?} {:?}", found.warnings, found.clocks);
+            assert_eq!(found.distrust().is_some(), said, "{duration} {rate_sigma:?}: {:?}", found.warnings);
+        }
     }
 }

@@ -40,6 +40,7 @@ impl<const D: usize> State<'_, D> {
         }
         self.warn_of_misfit(judged, &mut warnings);
         warnings.extend(self.warn_of_clocks(judged.fits));
+        warnings.extend(self.warn_of_rates());
         warnings.extend(self.warn_of_distances());
         let Judged { uncertainty, turning, mirrored, far, .. } = judged;
         warn_of_sides(&self.measured, &drawn_in(best, far), uncertainty, turning, mirrored, &mut warnings);
