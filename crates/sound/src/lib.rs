@@ -34,8 +34,9 @@
 //! them its bytes. Rooms begin with room/simulation.rs: options are checked (`check`), points and times drawn
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
-//! in each channel (`edge`), delays between each two (`correlation`), and those that agree (`consistent`). Events
-//! begin with events/find.rs, and `listen` puts both together; `picture` draws them.
+//! in each channel (`edge`), delays between each two (`spectrum`, `correlation`), those that agree (`consistent`), and how
+//! well they are known (`deviation`). Events begin with events/find.rs, and `listen` puts both together;
+//! `picture` draws them.
 
 mod error;
 mod events;

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::events::{EventChannel, EventError, EventOptions, Events, event_windows, find_events};
@@ -24,7 +25,7 @@ pub struct ListenOptions {
 }
 
 /// The arrival times of all events in all channels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Heard {
     /// The events, the channels, and what was dropped.
@@ -160,5 +161,9 @@ mod tests {
         // What brings a network to millimetres: 98 % within 30 us, half within 2.
         assert!(errors[78] < 30e-6 && errors[40] < 2e-6, "{} {}", errors[78], errors[40]);
         assert_eq!(heard.list().lines().count(), 81);
+        let json = serde_json::to_value(&heard).unwrap();
+        assert_eq!(json["arrivals"].as_array().unwrap().len(), 8);
+        let arrival = &json["arrivals"][7][9];
+        assert!(arrival["seconds"].is_f64() && arrival["sigma"].is_f64() && arrival["alternatives"].is_array());
     }
 }

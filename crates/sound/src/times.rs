@@ -9,9 +9,11 @@
 mod arrivals;
 mod consistent;
 mod correlation;
+mod deviation;
 mod edge;
 mod error;
 mod options;
+mod spectrum;
 
 pub use arrivals::{Arrival, arrival_times};
 pub use error::TimeError;

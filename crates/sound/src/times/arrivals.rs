@@ -1,25 +1,30 @@
 //! Arrival times from the parts of all channels in which an event is.
 
 use super::consistent::{Channel, Pair, consistent};
-use super::correlation::{Spectrum, first, peaks};
-use super::edge::{Edge, edge};
+use super::correlation::Correlation;
+use super::deviation::deviations;
+use super::edge::edge;
 use super::error::TimeError;
 use super::options::{TimeOptions, Window};
+use super::spectrum::Spectrum;
+
+use serde::Serialize;
 
 /// How much more than is compared at last is compared first, and how often.
 const WIDER: f64 = 1.5;
 const PASSES: usize = 2;
 
 /// When an event begins in a channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Arrival {
     /// Time by the recorder's clock, seconds. What all channels have in common is not determined better than the leading edge.
     pub seconds: f64,
-    /// Standard deviation, seconds, from the noise and from how far the pairs of channels disagree.
+    /// Standard deviation, seconds, but for what all channels have in common: from the noise and echoes that are mixed with
+    /// the sound, and from how far the pairs of channels disagree.
     pub sigma: f64,
     /// Times that fit the other channels less well, as of echoes, likeliest first, seconds.
-    pub others: Vec<f64>,
+    pub alternatives: Vec<f64>,
 }
 
 /// The times at which an event begins in each channel, from the part of each in which it is; `None` for channels that have
@@ -49,36 +54,41 @@ pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> R
         let range = "from 100 to 10,000,000 Hz";
         return Err(TimeError::Option { name: "a sample rate", value: window.sample_rate, range });
     }
-    let mut edges: Vec<Option<Edge>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
+    let mut edges: Vec<Option<f64>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
     // An echo may have been the first to rise above the noise, or above its share of the loudest one.
     let wide = TimeOptions { length: WIDER * options.length, before: WIDER * options.length / 2.0, ..options.clone() };
     for _ in 0..PASSES {
         let spectra = spectra(windows, &edges, &wide);
         let found = compared(&spectra, &wide, true);
-        let delayed: Vec<(&Spectrum, f64)> =
-            spectra.iter().zip(&found).map(|((_, s), channel)| (s, channel.off)).collect();
-        let Some(sound) = Spectrum::common(&delayed) else { break };
+        let Some(sound) = Spectrum::common(&delayed(&spectra, &found)) else { break };
         for (k, spectrum) in &spectra {
-            if let (Some(edge), Some(delay)) = (&mut edges[*k], first(spectrum, &sound, &wide)) {
-                edge.seconds += delay;
+            if let (Some(edge), Some(delay)) = (&mut edges[*k], Correlation::new(spectrum, &sound, &wide).first()) {
+                *edge += delay;
             }
         }
     }
     let spectra = spectra(windows, &edges, options);
+    let found = compared(&spectra, options, false);
+    let sigmas = deviations(&delayed(&spectra, &found), options);
     let mut all = vec![None; windows.len()];
-    for ((k, spectrum), channel) in spectra.iter().zip(compared(&spectra, options, false)) {
-        let Some(edge) = &edges[*k] else { continue };
-        let sigma = channel.spread.hypot(spectrum.deviation());
-        let others = channel.others.iter().map(|off| edge.seconds + off).collect();
-        all[*k] = Some(Arrival { seconds: edge.seconds + channel.off, sigma, others });
+    for (((k, _), channel), sigma) in spectra.iter().zip(found).zip(sigmas) {
+        let Some(edge) = edges[*k] else { continue };
+        let alternatives = channel.alternatives.iter().map(|off| edge + off).collect();
+        // Both see the same noise and echoes; the pairs also see where a channel is not one with the others.
+        all[*k] = Some(Arrival { seconds: edge + channel.off, sigma: sigma.max(channel.spread), alternatives });
     }
     Ok(all)
 }
 
 /// The spectra of the channels that have an edge, with their places.
-fn spectra(windows: &[Option<Window<'_>>], edges: &[Option<Edge>], options: &TimeOptions) -> Vec<(usize, Spectrum)> {
-    let of = |k: usize| Some((k, Spectrum::new(windows[k].as_ref()?, edges[k].as_ref()?, options)));
+fn spectra(windows: &[Option<Window<'_>>], edges: &[Option<f64>], options: &TimeOptions) -> Vec<(usize, Spectrum)> {
+    let of = |k: usize| Some((k, Spectrum::new(windows[k].as_ref()?, edges[k]?, options)));
     (0..windows.len()).filter_map(of).collect()
+}
+
+/// Spectra and their delays beside the leading edges.
+fn delayed<'a>(spectra: &'a [(usize, Spectrum)], found: &[Channel]) -> Vec<(&'a Spectrum, f64)> {
+    spectra.iter().zip(found).map(|((_, spectrum), channel)| (spectrum, channel.off)).collect()
 }
 
 /// What the pairs of channels say of each.
@@ -86,7 +96,7 @@ fn compared(spectra: &[(usize, Spectrum)], options: &TimeOptions, are_edges_roug
     let mut pairs = Vec::new();
     for (a, (_, first)) in spectra.iter().enumerate() {
         for (b, (_, second)) in spectra.iter().enumerate().skip(a + 1) {
-            pairs.push(Pair { channels: [a, b], peaks: peaks(first, second, options) });
+            pairs.push(Pair { channels: [a, b], peaks: Correlation::new(first, second, options).peaks() });
         }
     }
     consistent(spectra.len(), &pairs, are_edges_rough)
@@ -144,6 +154,38 @@ mod tests {
             let near = all.iter().filter(|error| **error < 30e-6).count();
             let said = format!("{reverberation} s, {signal_to_noise} dB: {near} of 100, median {:e}", all[50]);
             assert!(near >= least && all[50] < 2e-6, "{said}");
+        }
+    }
+
+    /// Errors over their standard deviations have a median of 0.6745 where they are normal.
+    #[test]
+    fn standard_deviations_are_those_of_errors() {
+        for reverberation in [0.2, 0.4, 0.7] {
+            for (signal_to_noise, sample_rate) in [(20.0, 48_000), (20.0, 16_000), (10.0, 48_000), (10.0, 16_000)] {
+                let mut all = Vec::new();
+                for seed in 10..14 {
+                    let mut options = RoomOptions { reverberation, sample_rate, seed, ..RoomOptions::default() };
+                    (options.microphones, options.sources) = (Placement::Random(10), Placement::Random(10));
+                    // Later echoes are not compared.
+                    (options.signal_to_noise, options.echo_time) = (Some(signal_to_noise), Some(0.03));
+                    all.extend(
+                        errors(&options).iter().filter_map(|(error, found)| Some((found.as_ref()?.sigma, *error))),
+                    );
+                }
+                let median = |mut all: Vec<f64>| {
+                    all.sort_by(f64::total_cmp);
+                    all[all.len() / 2]
+                };
+                let scale = median(all.iter().map(|(sigma, error)| error / sigma).collect()) / 0.6745;
+                let said = format!("{reverberation} s, {signal_to_noise} dB, {sample_rate} Hz: {scale}");
+                assert!((0.8..1.3).contains(&scale), "{said}");
+                // Those that are said to be worse are worse.
+                all.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let third = all.len() / 3;
+                let error = |part: &[(f64, f64)]| median(part.iter().map(|(_, error)| *error).collect());
+                let (low, high) = (error(&all[..third]), error(&all[all.len() - third..]));
+                assert!(high > 1.5 * low, "{said}: {low:e}, {high:e}");
+            }
         }
     }
 

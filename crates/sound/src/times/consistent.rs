@@ -29,7 +29,7 @@ pub(super) struct Channel {
     /// Standard deviation by the disagreement of its pairs, seconds.
     pub(super) spread: f64,
     /// Other delays to which several of its pairs point.
-    pub(super) others: Vec<f64>,
+    pub(super) alternatives: Vec<f64>,
 }
 
 /// The delays of this many channels, by least absolute deviations from a peak of each pair: the nearest one, but at first
@@ -92,13 +92,13 @@ fn channel(k: usize, off: &[f64], pairs: &[Pair]) -> Channel {
     let groups = groups(points);
     let count = apart.len();
     let is_other = |group: &&Vec<f64>| (median((*group).clone()) - off[k]).abs() > TOGETHER;
-    let mut others: Vec<&Vec<f64>> =
+    let mut alternatives: Vec<&Vec<f64>> =
         groups.iter().filter(is_other).filter(|group| 3 * group.len() >= count.max(2)).collect();
-    others.sort_by_key(|group| std::cmp::Reverse(group.len()));
-    let others = others.into_iter().map(|group| median(group.clone())).collect();
+    alternatives.sort_by_key(|group| std::cmp::Reverse(group.len()));
+    let alternatives = alternatives.into_iter().map(|group| median(group.clone())).collect();
     // Of the disagreement of two channels each has half of the square; the median of a normal one is 0.6745 deviations.
     let spread = if apart.is_empty() { 0.0 } else { median(apart) / 0.6745 / std::f64::consts::SQRT_2 };
-    Channel { off: off[k], spread, others }
+    Channel { off: off[k], spread, alternatives }
 }
 
 /// Numbers that are together, in ascending order.

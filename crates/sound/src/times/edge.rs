@@ -13,17 +13,8 @@ const HEARD: f64 = 2.2;
 /// Share of its top that counts as an edge in any case.
 const TOP: f64 = 0.6;
 
-/// The leading edge of an event.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Edge {
-    /// By the recorder's clock, seconds.
-    pub(super) seconds: f64,
-    /// Standard deviation of the samples before it.
-    pub(super) noise: f64,
-}
-
-/// The leading edge in a window; `None` where nothing is well above the noise.
-pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<Edge> {
+/// The leading edge in a window, seconds by the recorder's clock; `None` where nothing is well above the noise.
+pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<f64> {
     let (low, rate) = (options.band[0], window.sample_rate);
     let filtered = high_pass(window.samples, low / rate);
     let width = ((SMOOTHED * rate).round() as usize).max(1);
@@ -44,7 +35,7 @@ pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<Edge> {
     let place = first as f64 - (above - limit) / (above - below).max(f64::MIN_POSITIVE);
     // The envelope is late by half of its width.
     let place = place.max(0.0) - 0.5 * (width as f64 - 1.0);
-    Some(Edge { seconds: window.start + place / rate, noise })
+    Some(window.start + place / rate)
 }
 
 /// Samples without what is below a frequency, which is a share of the sample rate: a Butterworth filter of second order by

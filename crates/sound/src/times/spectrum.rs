@@ -1,0 +1,69 @@
+//! What an event is made of, by frequency.
+
+use super::options::{TimeOptions, Window};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Spectra are taken at steps of one over this many times the length of what is compared: twice keeps delays of its length
+/// from folding.
+const PADDING: f64 = 2.0;
+
+/// Share of the length over which both ends fade.
+const FADE: f64 = 0.1;
+
+/// The spectrum of a channel about its leading edge.
+pub(super) struct Spectrum {
+    pub(super) values: Vec<Complex64>,
+    /// The lowest frequency and the step, Hz.
+    pub(super) low: f64,
+    pub(super) step: f64,
+}
+
+impl Spectrum {
+    /// Of what is compared about a leading edge, seconds by the recorder's clock.
+    pub(super) fn new(window: &Window<'_>, edge: f64, options: &TimeOptions) -> Spectrum {
+        let (rate, [low, high]) = (window.sample_rate, options.band);
+        let step = 1.0 / (PADDING * options.length);
+        let count = (((high.min(0.45 * rate) - low) / step).max(0.0)) as usize + 1;
+        let begin = edge - options.before - window.start;
+        let first = (begin * rate).ceil().max(0.0) as usize;
+        let samples = window.samples.get(first..).unwrap_or_default();
+        let samples = &samples[..samples.len().min((options.length * rate) as usize)];
+        let mut values = vec![Complex64::default(); count];
+        for (k, sample) in samples.iter().enumerate() {
+            let at = (first + k) as f64 / rate - begin;
+            let sample = f64::from(*sample) * fade(at / options.length);
+            // The edge is the time zero.
+            let phase = |frequency: f64| Complex64::cis(-TAU * frequency * (at - options.before));
+            let (mut turn, by) = (sample * phase(low), phase(step));
+            for value in &mut values {
+                *value += turn;
+                turn *= by;
+            }
+        }
+        Spectrum { values, low, step }
+    }
+
+    /// The sound that channels have in common, of these delays beside their leading edges: what is on other ways is at
+    /// other times in each.
+    pub(super) fn common(all: &[(&Spectrum, f64)]) -> Option<Spectrum> {
+        let (first, _) = all.first()?;
+        let mut values = vec![Complex64::default(); first.values.len()];
+        for (spectrum, off) in all {
+            let power: f64 = spectrum.values.iter().map(Complex64::norm_sqr).sum();
+            let turn = Complex64::cis(TAU * first.step * off);
+            let mut factor = Complex64::cis(TAU * first.low * off) / power.sqrt().max(f64::MIN_POSITIVE);
+            for (sum, value) in values.iter_mut().zip(&spectrum.values) {
+                *sum += factor * value;
+                factor *= turn;
+            }
+        }
+        Some(Spectrum { values, ..**first })
+    }
+}
+
+/// A window whose ends fade, over the share of its length that has passed.
+fn fade(share: f64) -> f64 {
+    let end = share.min(1.0 - share) / FADE;
+    if end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (0.5 * TAU * end.max(0.0)).cos() }
+}
