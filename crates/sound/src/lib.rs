@@ -42,6 +42,7 @@ mod error;
 mod events;
 mod flac;
 mod format;
+mod fourier;
 mod input;
 mod kind;
 mod listen;

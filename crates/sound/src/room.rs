@@ -2,7 +2,6 @@
 //! and D. A. Berkley, Image method for efficiently simulating small-room acoustics, J. Acoust. Soc. Am. 65, 1979.
 
 mod check;
-mod convolution;
 mod error;
 mod images;
 mod kernel;

@@ -7,8 +7,9 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
+use crate::fourier::Fourier;
+
 use super::check::{check, check_duration};
-use super::convolution::Convolution;
 use super::error::RoomError;
 use super::kernel::{BEFORE, Kernel};
 use super::options::{Recorder, RoomOptions};
@@ -93,16 +94,19 @@ pub fn simulate_room(options: &RoomOptions) -> Result<RoomRecording, RoomError> 
         begin = range.end;
         let pace = pace(recorder);
         let longest = waveforms.iter().map(|waveform| waveform.samples(sample_rate, pace, &kernel).len()).max();
-        let convolution = Convolution::new(response.length(pace) + longest.unwrap_or(0));
+        // An echo is one impulse of 64 samples, whatever the sound. Added as the sound itself, each of the many thousand echoes
+        // would be some hundred samples for a clap and many thousand for a chirp; transforms are two for every sound at
+        // every microphone.
+        let fourier = Fourier::new(response.length(pace) + longest.unwrap_or(0));
         for ((waveform, &source), &time) in waveforms.iter().zip(&sources).zip(&times) {
-            let sound = convolution.spectrum(&waveform.samples(sample_rate, pace, &kernel));
+            let sound = fourier.spectrum(&waveform.samples(sample_rate, pace, &kernel));
             for k in range.clone() {
                 let travel = distance(source, microphones[k]) / options.speed;
                 let arrival = pace * (time + travel - recorder.start);
                 arrivals[k].push(arrival);
                 let place = arrival * sample_rate;
                 let way = response.samples(source, microphones[k], pace, place - place.floor());
-                let heard = convolution.product(&sound, &convolution.spectrum(&way));
+                let heard = fourier.product(&sound, &fourier.spectrum(&way));
                 // Both signals begin before their time.
                 add(&mut channels[k], place.floor() as i64 - 2 * BEFORE as i64, &heard);
             }

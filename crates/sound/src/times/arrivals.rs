@@ -1,7 +1,7 @@
 //! Arrival times from the parts of all channels in which an event is.
 
 use super::consistent::{Channel, Pair, consistent};
-use super::correlation::Correlation;
+use super::correlation::{Correlation, Delays};
 use super::deviation::deviations;
 use super::edge::edge;
 use super::error::TimeError;
@@ -13,6 +13,13 @@ use serde::Serialize;
 /// How much more than is compared at last is compared first, and how often.
 const WIDER: f64 = 1.5;
 const PASSES: usize = 2;
+
+/// Peaks of a pair of channels that are kept, and how large they are at least beside the largest.
+const PEAKS: usize = 4;
+const LEAST: f64 = 0.4;
+
+/// How strong the direct sound is at least beside the strongest echo: 10 dB weaker.
+const STRONG: f64 = 0.316;
 
 /// When an event begins in a channel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,19 +64,23 @@ pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> R
     let mut edges: Vec<Option<f64>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
     // An echo may have been the first to rise above the noise, or above its share of the loudest one.
     let wide = TimeOptions { length: WIDER * options.length, before: WIDER * options.length / 2.0, ..options.clone() };
+    let delays = Delays::new(&wide);
     for _ in 0..PASSES {
         let spectra = spectra(windows, &edges, &wide);
-        let found = compared(&spectra, &wide, true);
+        let found = compared(&spectra, &delays, true);
         let Some(sound) = Spectrum::common(&delayed(&spectra, &found)) else { break };
         for (k, spectrum) in &spectra {
-            if let (Some(edge), Some(delay)) = (&mut edges[*k], Correlation::new(spectrum, &sound, &wide).first()) {
+            let strong = Correlation::new(spectrum, &sound, &delays).peaks(STRONG);
+            let first = strong.iter().map(|peak| peak.delay).min_by(f64::total_cmp);
+            if let (Some(edge), Some(delay)) = (&mut edges[*k], first) {
                 *edge += delay;
             }
         }
     }
     let spectra = spectra(windows, &edges, options);
-    let found = compared(&spectra, options, false);
-    let sigmas = deviations(&delayed(&spectra, &found), options);
+    let delays = Delays::new(options);
+    let found = compared(&spectra, &delays, false);
+    let sigmas = deviations(&delayed(&spectra, &found), &delays, options.length);
     let mut all = vec![None; windows.len()];
     for (((k, _), channel), sigma) in spectra.iter().zip(found).zip(sigmas) {
         let Some(edge) = edges[*k] else { continue };
@@ -92,11 +103,13 @@ fn delayed<'a>(spectra: &'a [(usize, Spectrum)], found: &[Channel]) -> Vec<(&'a 
 }
 
 /// What the pairs of channels say of each.
-fn compared(spectra: &[(usize, Spectrum)], options: &TimeOptions, are_edges_rough: bool) -> Vec<Channel> {
+fn compared(spectra: &[(usize, Spectrum)], delays: &Delays, are_edges_rough: bool) -> Vec<Channel> {
     let mut pairs = Vec::new();
     for (a, (_, first)) in spectra.iter().enumerate() {
         for (b, (_, second)) in spectra.iter().enumerate().skip(a + 1) {
-            pairs.push(Pair { channels: [a, b], peaks: Correlation::new(first, second, options).peaks() });
+            let mut peaks = Correlation::new(first, second, delays).peaks(LEAST);
+            peaks.truncate(PEAKS);
+            pairs.push(Pair { channels: [a, b], peaks });
         }
     }
     consistent(spectra.len(), &pairs, are_edges_rough)

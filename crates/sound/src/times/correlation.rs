@@ -2,104 +2,19 @@
 
 use super::options::TimeOptions;
 use super::spectrum::Spectrum;
+use crate::fourier::Fourier;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Values of the correlation for each period of the highest frequency.
+/// Values of the correlation for each period of the highest frequency, at least.
 const STEPS: f64 = 6.0;
 
-/// Peaks of a pair of channels that are kept, and how large they are at least beside the largest.
-const PEAKS: usize = 4;
-const LEAST: f64 = 0.4;
+/// Share of a peak that the highest of these values has at least: cos(pi / 6), for a tone of the highest frequency.
+const SAMPLED: f64 = 0.866;
 
-/// How strong the direct sound is at least beside the strongest echo: 10 dB weaker.
-const STRONG: f64 = 0.316;
-
-/// The correlation of two channels, as a function of the delay of the first beside the second.
-pub(super) struct Correlation {
-    /// Cross-spectrum.
-    values: Vec<Complex64>,
-    /// The lowest frequency and the step, Hz.
-    low: f64,
-    step: f64,
-    /// Greatest delay, seconds.
-    most: f64,
-}
-
-impl Correlation {
-    pub(super) fn new(a: &Spectrum, b: &Spectrum, options: &TimeOptions) -> Correlation {
-        let whitened = |(a, b): (&Complex64, &Complex64)| {
-            let product = a * b.conj();
-            let modulus = product.norm();
-            if modulus > 0.0 { product / modulus.powf(options.whitening) } else { product }
-        };
-        let values = a.values.iter().zip(&b.values).map(whitened).collect();
-        Correlation { values, low: a.low, step: a.step, most: 0.5 * options.length }
-    }
-
-    /// The correlation at a delay.
-    fn at(&self, delay: f64) -> f64 {
-        self.sum(delay, |_, value| value.re)
-    }
-
-    /// How the correlation rises with the delay.
-    pub(super) fn slope(&self, delay: f64) -> f64 {
-        -self.sum(delay, |frequency, value| TAU * frequency * value.im)
-    }
-
-    /// How sharp a peak is: how the slope falls.
-    pub(super) fn sharpness(&self, delay: f64) -> f64 {
-        self.sum(delay, |frequency, value| (TAU * frequency).powi(2) * value.re)
-    }
-
-    fn sum(&self, delay: f64, term: impl Fn(f64, Complex64) -> f64) -> f64 {
-        let (mut turn, by) = (Complex64::cis(TAU * self.low * delay), Complex64::cis(TAU * self.step * delay));
-        let mut sum = 0.0;
-        for (k, value) in self.values.iter().enumerate() {
-            sum += term(self.low + k as f64 * self.step, value * turn);
-            turn *= by;
-        }
-        sum
-    }
-
-    /// A step of delays that is short enough for all frequencies.
-    pub(super) fn spacing(&self) -> f64 {
-        1.0 / (STEPS * (self.low + self.values.len() as f64 * self.step))
-    }
-
-    /// The delays at which two channels agree best, the best first.
-    pub(super) fn peaks(&self) -> Vec<Peak> {
-        let mut found = self.all_peaks();
-        found.retain(|peak| peak.share >= LEAST);
-        found.truncate(PEAKS);
-        found
-    }
-
-    /// The delay at which a channel first has a sound as strongly as it should.
-    pub(super) fn first(&self) -> Option<f64> {
-        let strong = self.all_peaks().into_iter().filter(|peak| peak.share >= STRONG);
-        strong.map(|peak| peak.delay).min_by(f64::total_cmp)
-    }
-
-    /// All delays at which two channels agree, the best first.
-    fn all_peaks(&self) -> Vec<Peak> {
-        let spacing = self.spacing();
-        let most = (self.most / spacing) as i64;
-        let values: Vec<f64> = (-most..=most).map(|k| self.at(k as f64 * spacing)).collect();
-        let mut found: Vec<Peak> = Vec::new();
-        for k in 1..values.len().saturating_sub(1) {
-            if values[k] > 0.0 && values[k] >= values[k - 1] && values[k] > values[k + 1] {
-                let middle = (k as i64 - most) as f64 * spacing;
-                let delay = stationary(|delay| self.slope(delay), middle - spacing, middle + spacing);
-                found.push(Peak { delay, share: self.at(delay) });
-            }
-        }
-        found.sort_by(|p, q| q.share.total_cmp(&p.share));
-        let largest = found.first().map_or(1.0, |peak| peak.share);
-        found.iter_mut().for_each(|peak| peak.share /= largest);
-        found
-    }
-}
+/// Rounds in which the top of a peak is found at most, and a step that is too short for another, seconds.
+const ROUNDS: usize = 30;
+const NEAR: f64 = 1e-12;
 
 /// A delay at which two channels agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,18 +25,139 @@ pub(super) struct Peak {
     pub(super) share: f64,
 }
 
-/// Where a falling function is zero, by halving: thirty times leave less than a picosecond of a millisecond.
-fn stationary(slope: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        if slope(middle) > 0.0 { low = middle } else { high = middle }
+/// The correlation of two channels, as a function of the delay of the first beside the second.
+pub(super) struct Correlation<'a> {
+    delays: &'a Delays,
+    /// Cross-spectrum.
+    values: Vec<Complex64>,
+    /// Step of frequencies, Hz, and the lowest one in steps.
+    step: f64,
+    first: usize,
+}
+
+/// The delays at which correlations are taken: multiples of a short one.
+pub(super) struct Delays {
+    fourier: Fourier,
+    /// How many of either sign.
+    most: usize,
+    whitening: f64,
+}
+
+impl Delays {
+    pub(super) fn new(options: &TimeOptions) -> Delays {
+        let periods = options.band[1] / Spectrum::step(options);
+        let fourier = Fourier::new((STEPS * periods).ceil() as usize);
+        // Spectra have steps that keep twice this from folding.
+        let most = fourier.length() / 4;
+        Delays { fourier, most, whitening: options.whitening }
     }
-    0.5 * (low + high)
+}
+
+impl<'a> Correlation<'a> {
+    pub(super) fn new(a: &Spectrum, b: &Spectrum, delays: &'a Delays) -> Correlation<'a> {
+        let whitened = |(a, b): (&Complex64, &Complex64)| {
+            let product = a * b.conj();
+            let modulus = product.norm();
+            if modulus > 0.0 { product / modulus.powf(delays.whitening) } else { product }
+        };
+        let values = a.values.iter().zip(&b.values).map(whitened).collect();
+        Correlation { delays, values, step: a.step, first: a.first }
+    }
+
+    /// The delays at which two channels agree, with at least this share of the largest correlation, the best first.
+    pub(super) fn peaks(&self, least: f64) -> Vec<Peak> {
+        let (length, most) = (self.delays.fourier.length(), self.delays.most);
+        let spacing = 1.0 / (length as f64 * self.step);
+        let all = self.delays.fourier.signal(self.padded(self.values.iter().copied()));
+        // Of negative delays the values are at the end.
+        let value = |k: usize| all[(length + k - most) % length];
+        let largest = (0..=2 * most).map(value).fold(0.0, f64::max);
+        let mut found: Vec<Peak> = Vec::new();
+        for k in 1..2 * most {
+            let here = value(k);
+            let is_top = here > 0.0 && here >= value(k - 1) && here > value(k + 1);
+            if is_top && here >= SAMPLED * least * largest {
+                let delay = self.top((k as f64 - most as f64) * spacing, spacing);
+                let [share, ..] = self.at(delay);
+                found.push(Peak { delay, share });
+            }
+        }
+        found.sort_by(|p, q| q.share.total_cmp(&p.share));
+        let largest = found.first().map_or(1.0, |peak| peak.share);
+        found.iter_mut().for_each(|peak| peak.share /= largest);
+        found.retain(|peak| peak.share >= least);
+        found
+    }
+
+    /// How fast the slope falls at the top of a peak.
+    pub(super) fn sharpness(&self, delay: f64) -> f64 {
+        let [_, _, curvature] = self.at(delay);
+        -curvature
+    }
+
+    /// Slopes of what is odd about a delay, at all others on one side of it.
+    pub(super) fn odd_slopes(&self, delay: f64) -> Vec<f64> {
+        let mut turn = Complex64::cis(TAU * self.first as f64 * self.step * delay);
+        let by = Complex64::cis(TAU * self.step * delay);
+        // The spectrum of what is odd is imaginary, and that of its slope is real.
+        let slope = |(k, value): (usize, &Complex64)| {
+            let odd = (value * turn).im;
+            turn *= by;
+            Complex64::from(TAU * (self.first + k) as f64 * self.step * odd)
+        };
+        let Delays { fourier, most, .. } = self.delays;
+        let mut slopes = fourier.signal(self.padded(self.values.iter().enumerate().map(slope)));
+        slopes.truncate(*most);
+        // A transform has half of each frequency, and is divided by its length.
+        slopes.iter_mut().for_each(|slope| *slope *= 0.5 * fourier.length() as f64);
+        slopes
+    }
+
+    /// Values from the lowest frequency on, with zeros before.
+    fn padded(&self, values: impl Iterator<Item = Complex64>) -> impl Iterator<Item = Complex64> {
+        std::iter::repeat_n(Complex64::default(), self.first).chain(values)
+    }
+
+    /// The correlation at a delay, and its first and second derivative.
+    fn at(&self, delay: f64) -> [f64; 3] {
+        let mut turn = Complex64::cis(TAU * self.first as f64 * self.step * delay);
+        let by = Complex64::cis(TAU * self.step * delay);
+        let mut sums = [0.0; 3];
+        for (k, value) in self.values.iter().enumerate() {
+            let (value, frequency) = (value * turn, TAU * (self.first + k) as f64 * self.step);
+            sums[0] += value.re;
+            sums[1] -= frequency * value.im;
+            sums[2] -= frequency.powi(2) * value.re;
+            turn *= by;
+        }
+        sums
+    }
+
+    /// The top of a peak that is at most this far from `middle`, by Newton's method between bounds.
+    fn top(&self, middle: f64, far: f64) -> f64 {
+        let (mut low, mut high, mut delay) = (middle - far, middle + far, middle);
+        for _ in 0..ROUNDS {
+            let [_, slope, curvature] = self.at(delay);
+            if slope > 0.0 {
+                low = delay
+            } else {
+                high = delay
+            }
+            let next = delay - slope / curvature;
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let step = next - delay;
+            delay = next;
+            if step.abs() < NEAR {
+                break;
+            }
+        }
+        delay
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Correlation;
+    use super::{Correlation, Delays};
     use crate::times::options::{TimeOptions, Window};
     use crate::times::spectrum::Spectrum;
     use std::f64::consts::TAU;
@@ -143,7 +179,8 @@ mod tests {
                 let window = Window { samples: &samples, start: 0.0, sample_rate: rate };
                 Spectrum::new(&window, 0.009, &options)
             };
-            let found = Correlation::new(&spectrum(0.01 + delay, rate), &spectrum(0.01, other), &options).peaks();
+            let delays = Delays::new(&options);
+            let found = Correlation::new(&spectrum(0.01 + delay, rate), &spectrum(0.01, other), &delays).peaks(0.4);
             assert!((found[0].delay - delay).abs() < 1e-7, "{rate} {other}: {found:?}");
         }
     }

@@ -16,13 +16,14 @@ pub enum TimeError {
         /// What it may be.
         range: &'static str,
     },
-    /// What is compared has too many frequencies.
+    /// What is compared has too many periods.
     #[error(
-        "a band of {band} Hz and a length of {length} s are too much to compare; take a narrower band or less of the sound"
+        "frequencies up to {highest} Hz over {length} s are too much to compare; lower the end of the band, or take less of \
+         the sound"
     )]
     TooLong {
-        /// Width of the band, Hz.
-        band: f64,
+        /// The highest frequency, Hz.
+        highest: f64,
         /// Length of what is compared, seconds.
         length: f64,
     },

@@ -32,7 +32,7 @@ pub struct TimeOptions {
     pub edge_share: f64,
 }
 
-/// Frequencies that are compared at most, before what is compared first is wider.
+/// Periods of the highest frequency that are compared at most, before what is compared first is wider.
 const MOST: f64 = 1e4;
 
 impl TimeOptions {
@@ -68,9 +68,8 @@ impl TimeOptions {
         if !(0.0..=1.0).contains(&self.edge_share) {
             return wrong("edge_share", self.edge_share, "from 0 to 1");
         }
-        let band = high - low;
-        if band * self.length > MOST {
-            return Err(TimeError::TooLong { band, length: self.length });
+        if high * self.length > MOST {
+            return Err(TimeError::TooLong { highest: high, length: self.length });
         }
         Ok(())
     }

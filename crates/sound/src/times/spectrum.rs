@@ -14,17 +14,24 @@ const FADE: f64 = 0.1;
 /// The spectrum of a channel about its leading edge.
 pub(super) struct Spectrum {
     pub(super) values: Vec<Complex64>,
-    /// The lowest frequency and the step, Hz.
-    pub(super) low: f64,
+    /// Step of frequencies, Hz, and the lowest one in steps.
     pub(super) step: f64,
+    pub(super) first: usize,
 }
 
 impl Spectrum {
+    /// Step of frequencies, Hz.
+    pub(super) fn step(options: &TimeOptions) -> f64 {
+        1.0 / (PADDING * options.length)
+    }
+
     /// Of what is compared about a leading edge, seconds by the recorder's clock.
     pub(super) fn new(window: &Window<'_>, edge: f64, options: &TimeOptions) -> Spectrum {
         let (rate, [low, high]) = (window.sample_rate, options.band);
-        let step = 1.0 / (PADDING * options.length);
-        let count = (((high.min(0.45 * rate) - low) / step).max(0.0)) as usize + 1;
+        let step = Spectrum::step(options);
+        // Frequencies are whole steps.
+        let lowest = (low / step).ceil();
+        let count = (high.min(0.45 * rate) / step - lowest).max(0.0) as usize + 1;
         let begin = edge - options.before - window.start;
         let first = (begin * rate).ceil().max(0.0) as usize;
         let samples = window.samples.get(first..).unwrap_or_default();
@@ -35,13 +42,13 @@ impl Spectrum {
             let sample = f64::from(*sample) * fade(at / options.length);
             // The edge is the time zero.
             let phase = |frequency: f64| Complex64::cis(-TAU * frequency * (at - options.before));
-            let (mut turn, by) = (sample * phase(low), phase(step));
+            let (mut turn, by) = (sample * phase(lowest * step), phase(step));
             for value in &mut values {
                 *value += turn;
                 turn *= by;
             }
         }
-        Spectrum { values, low, step }
+        Spectrum { values, step, first: lowest as usize }
     }
 
     /// The sound that channels have in common, of these delays beside their leading edges: what is on other ways is at
@@ -52,7 +59,8 @@ impl Spectrum {
         for (spectrum, off) in all {
             let power: f64 = spectrum.values.iter().map(Complex64::norm_sqr).sum();
             let turn = Complex64::cis(TAU * first.step * off);
-            let mut factor = Complex64::cis(TAU * first.low * off) / power.sqrt().max(f64::MIN_POSITIVE);
+            let mut factor =
+                Complex64::cis(TAU * first.first as f64 * first.step * off) / power.sqrt().max(f64::MIN_POSITIVE);
             for (sum, value) in values.iter_mut().zip(&spectrum.values) {
                 *sum += factor * value;
                 factor *= turn;
