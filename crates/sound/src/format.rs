@@ -1,5 +1,8 @@
 //! What is the same throughout a recording, and the limits of what is believed of it.
 
+/// Up to this share of the sample rate frequencies are used: recorders filter what is above.
+pub(crate) const HIGHEST: f64 = 0.45;
+
 /// Most channels of a recording. Headers with more are taken to be wrong.
 pub const MAX_CHANNELS: usize = 1024;
 

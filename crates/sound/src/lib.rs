@@ -35,7 +35,8 @@
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
 //! in each channel (`edge`), delays between each two (`spectrum`, `correlation`), those that agree (`consistent`), and how
-//! well they are known (`deviation`). Events begin with events/find.rs, and `listen` puts both together;
+//! well they are known (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
+//! alone (times/known.rs). Events begin with events/find.rs, and `listen` puts both together;
 //! `picture` draws them.
 
 mod error;
@@ -44,11 +45,13 @@ mod flac;
 mod format;
 mod fourier;
 mod input;
+mod kernel;
 mod kind;
 mod listen;
 mod picture;
 mod recording;
 mod room;
+mod signal;
 mod survey;
 mod times;
 mod wav;
@@ -64,6 +67,7 @@ pub use listen::{Heard, ListenError, ListenOptions, listen};
 pub use picture::{Trace, spectrogram, waveforms};
 pub use recording::Recording;
 pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
+pub use signal::{Signal, SignalError, TemplateError};
 pub use survey::{ChannelName, ChannelSurvey, survey};
 pub use times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
 pub use write::{SampleFormat, WriteError, write_wav};

@@ -4,7 +4,6 @@
 mod check;
 mod error;
 mod images;
-mod kernel;
 mod options;
 mod placement;
 mod response;

@@ -5,16 +5,21 @@
 //! Carter, The generalized correlation method for estimation of time delay, IEEE Trans. Acoust. Speech Signal Process. 24,
 //! 1976), which has a peak for each pair of ways, echoes included. The times of all channels together are those that agree
 //! with a peak of each pair: wrong peaks of some pairs contradict the others.
+//!
+//! A signal that is known tells the time of each channel by itself.
 
+mod arrival;
 mod arrivals;
 mod consistent;
 mod correlation;
 mod deviation;
 mod edge;
 mod error;
+mod known;
 mod options;
 mod spectrum;
 
-pub use arrivals::{Arrival, arrival_times};
+pub use arrival::Arrival;
+pub use arrivals::arrival_times;
 pub use error::TimeError;
 pub use options::{TimeOptions, Window};

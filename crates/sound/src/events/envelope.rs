@@ -18,10 +18,10 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// An envelope of the band from `lower` to `upper`, Hz.
-    pub(super) fn new(lower: f64, upper: f64, sample_rate: u32) -> Envelope {
+    /// An envelope of a band, from and to, of which this width is used, Hz.
+    pub(super) fn new([lower, upper]: [f64; 2], width: f64, sample_rate: u32) -> Envelope {
         let rate = f64::from(sample_rate);
-        let seconds = BIN.max(LEAST_PRODUCT / (upper - lower));
+        let seconds = BIN.max(LEAST_PRODUCT / width);
         let length = ((seconds * rate).round() as u64).max(1);
         Envelope { filter: BandPass::new(lower, upper, rate), length, count: 0, squares: 0.0 }
     }
@@ -31,8 +31,13 @@ impl Envelope {
         self.length as f64 / f64::from(sample_rate)
     }
 
+    /// The next samples; gives the levels of the bins that they end.
+    pub(super) fn levels(&mut self, samples: &[f32]) -> impl Iterator<Item = f32> {
+        samples.iter().filter_map(|&sample| self.next(sample))
+    }
+
     /// The next sample; gives a level where it ends a bin.
-    pub(super) fn next(&mut self, sample: f32) -> Option<f32> {
+    fn next(&mut self, sample: f32) -> Option<f32> {
         let value = self.filter.next(sample);
         self.squares += value * value;
         self.count += 1;

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::error::ReadError;
+use crate::signal::SignalError;
 
 /// Why events cannot be looked for, or read.
 #[derive(Debug, Error)]
@@ -11,6 +12,9 @@ pub enum EventError {
     /// A recording cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// The signal cannot be looked for.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
     /// No recordings were given.
     #[error("there are no recordings; give at least one file")]
     NoRecordings,

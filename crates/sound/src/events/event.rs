@@ -26,7 +26,8 @@ pub struct Event {
     /// Of each channel the onset of the direct sound; `None` if the channel did not hear it.
     pub onsets: Vec<Option<Onset>>,
     /// Where its direct sounds are, seconds from the first sample: from 50 ms before the earliest onset to 50 ms after the
-    /// sound has passed the whole extent, the same for all channels. It may end after the recording does.
+    /// sound, or the end of the signal, has passed the whole extent, the same for all channels. It may end after the
+    /// recording does.
     pub window: Range<f64>,
 }
 

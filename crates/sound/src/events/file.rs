@@ -1,15 +1,14 @@
 //! The onsets in one file.
 
+use crate::format::HIGHEST;
 use crate::recording::Recording;
+use crate::signal::Stream;
 
 use super::detector::Detector;
 use super::envelope::Envelope;
 use super::error::EventError;
 use super::event::Onset;
 use super::options::EventOptions;
-
-/// Up to this share of the sample rate frequencies are used: recorders filter what is above.
-const HIGHEST: f64 = 0.45;
 
 /// What was heard in a file.
 #[derive(Debug, PartialEq)]
@@ -25,7 +24,7 @@ pub(super) struct FileOnsets {
 /// Reads a recording to its end, this many samples of each channel at a time, and finds the onsets of each channel.
 ///
 /// # Errors
-/// If the sample rate is too low for the band, or the file cannot be read.
+/// If the sample rate is too low for the band, the signal has too little in it, or the file cannot be read.
 pub(super) fn file_onsets(
     mut recording: Recording,
     options: &EventOptions,
@@ -38,19 +37,36 @@ pub(super) fn file_onsets(
         let limit = highest - EventOptions::LEAST_WIDTH;
         return Err(EventError::Band { file, sample_rate, upper, lower, limit });
     }
+    let compression = Stream::compression(&options.signal, [lower, upper], f64::from(sample_rate))?;
+    let width = compression.as_ref().map_or(upper - lower, |compression| compression.width);
     let channel = |_| {
-        let envelope = Envelope::new(lower, upper, sample_rate);
+        let envelope = Envelope::new([lower, upper], width, sample_rate);
         let bin = envelope.bin_seconds(sample_rate);
-        (envelope, Detector::new(bin, options.floor_seconds, options.threshold))
+        let detector = Detector::new(bin, options.floor_seconds, options.threshold);
+        (compression.clone().map(Stream::new), envelope, detector)
     };
-    let mut channels: Vec<(Envelope, Detector)> = (0..recording.channels()).map(channel).collect();
-    let mut block = Vec::new();
+    let mut channels: Vec<(Option<Stream>, Envelope, Detector)> = (0..recording.channels()).map(channel).collect();
+    let (mut block, mut compressed) = (Vec::new(), Vec::new());
     while recording.read_block(block_length, &mut block)? > 0 {
-        for ((envelope, detector), samples) in channels.iter_mut().zip(&block) {
-            samples.iter().filter_map(|&sample| envelope.next(sample)).for_each(|level| detector.push(level));
+        for ((stream, envelope, detector), samples) in channels.iter_mut().zip(&block) {
+            let Some(stream) = stream else {
+                envelope.levels(samples).for_each(|level| detector.push(level));
+                continue;
+            };
+            stream.push(samples, &mut compressed);
+            envelope.levels(&compressed).for_each(|level| detector.push(level));
+            compressed.clear();
         }
     }
-    let channels = channels.into_iter().map(|(_, detector)| detector.finish()).collect();
+    let finished = |(stream, mut envelope, mut detector): (Option<Stream>, Envelope, Detector)| {
+        if let Some(stream) = stream {
+            stream.finish(&mut compressed);
+            envelope.levels(&compressed).for_each(|level| detector.push(level));
+            compressed.clear();
+        }
+        detector.finish()
+    };
+    let channels = channels.into_iter().map(finished).collect();
     Ok(FileOnsets { file, sample_rate, channels })
 }
 
@@ -58,6 +74,7 @@ pub(super) fn file_onsets(
 mod tests {
     use super::*;
     use crate::room::{Placement, RoomOptions, simulate_room};
+    use crate::signal::Signal;
     use crate::write::{SampleFormat, write_wav};
 
     #[test]
@@ -68,12 +85,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("claps.wav");
         write_wav(&path, recording.sample_rate, &recording.channels, SampleFormat::Float32).unwrap();
-        let onsets =
-            |block: usize| file_onsets(Recording::open(&path).unwrap(), &EventOptions::default(), block).unwrap();
-        let expected = onsets(1 << 14);
-        assert!(expected.channels.iter().all(|channel| channel.len() >= 4));
-        for block in [1, 47, 1000, 1 << 20] {
-            assert_eq!(onsets(block), expected);
+        // What is heard of a signal that is not there does not matter.
+        for signal in [Signal::Unknown, Signal::Chirp { from: 1000.0, to: 6000.0, seconds: 0.01 }] {
+            let options = EventOptions { signal, ..EventOptions::default() };
+            let onsets = |block: usize| file_onsets(Recording::open(&path).unwrap(), &options, block).unwrap();
+            let expected = onsets(1 << 14);
+            assert!(expected.channels.iter().all(|channel| channel.len() >= 4));
+            for block in [1, 47, 1000, 1 << 20] {
+                assert_eq!(onsets(block), expected);
+            }
         }
     }
 }

@@ -193,7 +193,8 @@ impl Grouping<'_> {
                 self.grouped.dropped.push(DroppedEvent { seconds, reason: DropReason::Overlap { kept } });
             }
             None => {
-                let window = (seconds - MARGIN).max(0.0)..seconds + self.options.spread() + MARGIN;
+                let after = self.options.spread() + self.options.signal.seconds() + MARGIN;
+                let window = (seconds - MARGIN).max(0.0)..seconds + after;
                 self.grouped.events.push(Event { seconds, onsets, window });
             }
         }

@@ -1,6 +1,7 @@
 //! What is looked for.
 
 use super::error::EventError;
+use crate::signal::Signal;
 
 /// Longest time that sound may take from one microphone to another, seconds: windows are held in memory.
 const MAX_SPREAD: f64 = 10.0;
@@ -12,6 +13,9 @@ const DEAD_TIME: f64 = 0.15;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct EventOptions {
+    /// What is known of the sounds. Those of a signal are found in the compressed recording, in which it is a pulse where it
+    /// begins, although noise may hide it. Default [`Signal::Unknown`].
+    pub signal: Signal,
     /// The frequencies in which sounds are looked for, from and to, Hz: 1 to 10^6 each, at least 100 Hz apart. Of each file
     /// only those up to 0.45 of its sample rate are used. Default 500 to 10,000.
     pub band: [f64; 2],
@@ -39,6 +43,7 @@ pub struct EventOptions {
 impl Default for EventOptions {
     fn default() -> EventOptions {
         EventOptions {
+            signal: Signal::Unknown,
             band: [500.0, 10_000.0],
             floor_seconds: 10.0,
             threshold: 4.0,
@@ -64,6 +69,7 @@ impl EventOptions {
         within("the beginning of the band", "1 to 1e6 Hz", lower, 1.0, 1e6)?;
         within("the end of the band", "1 to 1e6 Hz", upper, 1.0, 1e6)?;
         let width = EventOptions::LEAST_WIDTH;
+        self.signal.validate()?;
         within("the width of the band", "100 Hz or more, with its end above its beginning", upper - lower, width, 1e6)?;
         within("the time of the noise floor", "0.5 to 600 s", self.floor_seconds, 0.5, 600.0)?;
         within("the threshold", "1.5 to 1e6", self.threshold, 1.5, 1e6)?;

@@ -1,9 +1,9 @@
 //! What a microphone hears of an impulse at a source.
 
 use super::images::images;
-use super::kernel::{BEFORE, Kernel, TAPS};
 use super::options::RoomOptions;
 use super::placement::distance;
+use crate::kernel::{BEFORE, Kernel, TAPS};
 
 /// The way from sources to microphones in a room.
 pub(super) struct Response<'a> {

@@ -11,12 +11,12 @@ use crate::fourier::Fourier;
 
 use super::check::{check, check_duration};
 use super::error::RoomError;
-use super::kernel::{BEFORE, Kernel};
 use super::options::{Recorder, RoomOptions};
 use super::placement::{distance, place, times};
 use super::response::Response;
 use super::walls::reflection;
 use super::waveform::Waveform;
+use crate::kernel::{BEFORE, Kernel};
 
 /// Simulated recordings.
 #[derive(Debug, Clone, PartialEq)]

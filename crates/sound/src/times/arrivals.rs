@@ -1,44 +1,29 @@
 //! Arrival times from the parts of all channels in which an event is.
 
+use super::arrival::{Arrival, PEAKS, STRONG};
 use super::consistent::{Channel, Pair, consistent};
 use super::correlation::{Correlation, Delays};
 use super::deviation::deviations;
 use super::edge::edge;
 use super::error::TimeError;
+use super::known;
 use super::options::{TimeOptions, Window};
 use super::spectrum::Spectrum;
-
-use serde::Serialize;
+use crate::signal::{Compression, Signal};
 
 /// How much more than is compared at last is compared first, and how often.
 const WIDER: f64 = 1.5;
 const PASSES: usize = 2;
 
-/// Peaks of a pair of channels that are kept, and how large they are at least beside the largest.
-const PEAKS: usize = 4;
+/// How large peaks of a pair of channels are at least beside the largest.
 const LEAST: f64 = 0.4;
 
-/// How strong the direct sound is at least beside the strongest echo: 10 dB weaker.
-const STRONG: f64 = 0.316;
-
-/// When an event begins in a channel.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct Arrival {
-    /// Time by the recorder's clock, seconds. What all channels have in common is not determined better than the leading edge.
-    pub seconds: f64,
-    /// Standard deviation, seconds, but for what all channels have in common: from the noise and echoes that are mixed with
-    /// the sound, and from how far the pairs of channels disagree.
-    pub sigma: f64,
-    /// Times that fit the other channels less well, as of echoes, likeliest first, seconds.
-    pub alternatives: Vec<f64>,
-}
-
 /// The times at which an event begins in each channel, from the part of each in which it is; `None` for channels that have
-/// no such part, or in whose part nothing rises above the noise.
+/// no such part, or in whose part nothing rises above the noise. Parts in which a signal is looked for hold all of it.
 ///
 /// # Errors
-/// If an option is out of range, or the sample rate of a part is not from 100 Hz to 10 MHz.
+/// If an option is out of range, the sample rate of a part is not from 100 Hz to 10 MHz, or the signal has too little in the
+/// band.
 ///
 /// ```
 /// let mut options = sound::RoomOptions::default();
@@ -61,16 +46,19 @@ pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> R
         let range = "from 100 to 10,000,000 Hz";
         return Err(TimeError::Option { name: "a sample rate", value: window.sample_rate, range });
     }
+    if options.signal != Signal::Unknown {
+        return known_times(windows, options);
+    }
     let mut edges: Vec<Option<f64>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
     // An echo may have been the first to rise above the noise, or above its share of the loudest one.
     let wide = TimeOptions { length: WIDER * options.length, before: WIDER * options.length / 2.0, ..options.clone() };
     let delays = Delays::new(&wide);
     for _ in 0..PASSES {
         let spectra = spectra(windows, &edges, &wide);
-        let found = compared(&spectra, &delays, true);
+        let found = compared(&spectra, options.whitening, &delays, true);
         let Some(sound) = Spectrum::common(&delayed(&spectra, &found)) else { break };
         for (k, spectrum) in &spectra {
-            let strong = Correlation::new(spectrum, &sound, &delays).peaks(STRONG);
+            let strong = Correlation::of(spectrum, &sound, options.whitening).peaks(STRONG, &delays);
             let first = strong.iter().map(|peak| peak.delay).min_by(f64::total_cmp);
             if let (Some(edge), Some(delay)) = (&mut edges[*k], first) {
                 *edge += delay;
@@ -79,16 +67,36 @@ pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> R
     }
     let spectra = spectra(windows, &edges, options);
     let delays = Delays::new(options);
-    let found = compared(&spectra, &delays, false);
-    let sigmas = deviations(&delayed(&spectra, &found), &delays, options.length);
+    let found = compared(&spectra, options.whitening, &delays, false);
+    let sigmas = deviations(&delayed(&spectra, &found), options.whitening, &delays);
     let mut all = vec![None; windows.len()];
     for (((k, _), channel), sigma) in spectra.iter().zip(found).zip(sigmas) {
         let Some(edge) = edges[*k] else { continue };
         let alternatives = channel.alternatives.iter().map(|off| edge + off).collect();
         // Both see the same noise and echoes; the pairs also see where a channel is not one with the others.
-        all[*k] = Some(Arrival { seconds: edge + channel.off, sigma: sigma.max(channel.spread), alternatives });
+        let sigma = sigma.unwrap_or(options.length).max(channel.spread);
+        all[*k] = Some(Arrival { seconds: edge + channel.off, sigma, alternatives });
     }
     Ok(all)
+}
+
+/// The times at which a known signal begins in each channel.
+fn known_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> Result<Vec<Option<Arrival>>, TimeError> {
+    let longest = windows.iter().flatten().map(|window| window.samples.len()).max().unwrap_or(0);
+    let mut compressions: Vec<(f64, Compression)> = Vec::new();
+    for window in windows.iter().flatten() {
+        let rate = window.sample_rate;
+        if compressions.iter().all(|(other, _)| *other != rate) {
+            let made = Compression::new(&options.signal, options.band, rate, longest)?;
+            compressions.extend(made.map(|compression| (rate, compression)));
+        }
+    }
+    let of = |window: &Option<Window<'_>>| {
+        let window = window.as_ref()?;
+        let (_, compression) = compressions.iter().find(|(rate, _)| *rate == window.sample_rate)?;
+        known::arrival(window, compression)
+    };
+    Ok(windows.iter().map(of).collect())
 }
 
 /// The spectra of the channels that have an edge, with their places.
@@ -103,11 +111,11 @@ fn delayed<'a>(spectra: &'a [(usize, Spectrum)], found: &[Channel]) -> Vec<(&'a 
 }
 
 /// What the pairs of channels say of each.
-fn compared(spectra: &[(usize, Spectrum)], delays: &Delays, are_edges_rough: bool) -> Vec<Channel> {
+fn compared(spectra: &[(usize, Spectrum)], whitening: f64, delays: &Delays, are_edges_rough: bool) -> Vec<Channel> {
     let mut pairs = Vec::new();
     for (a, (_, first)) in spectra.iter().enumerate() {
         for (b, (_, second)) in spectra.iter().enumerate().skip(a + 1) {
-            let mut peaks = Correlation::new(first, second, delays).peaks(LEAST);
+            let mut peaks = Correlation::of(first, second, whitening).peaks(LEAST, delays);
             peaks.truncate(PEAKS);
             pairs.push(Pair { channels: [a, b], peaks });
         }
@@ -117,7 +125,7 @@ fn compared(spectra: &[(usize, Spectrum)], delays: &Delays, are_edges_rough: boo
 
 #[cfg(test)]
 mod tests {
-    use super::{Arrival, TimeOptions, Window, arrival_times};
+    use super::{Arrival, Signal, TimeOptions, Window, arrival_times};
     use crate::{Placement, RoomOptions, simulate_room};
 
     /// Seconds of a channel before and after the direct sound at the first microphone that hears it.
@@ -205,6 +213,8 @@ mod tests {
     #[test]
     fn nothing_is_heard_in_silence_and_noise() {
         let options = TimeOptions::default();
+        let signal = Signal::Chirp { from: 1000.0, to: 6000.0, seconds: 0.05 };
+        let chirp = TimeOptions { signal, ..options.clone() };
         let (silence, short) = (vec![0.0; 9600], vec![0.5; 3]);
         let mut made = RoomOptions::default();
         (made.microphones, made.sources) = (Placement::Random(2), Placement::Random(1));
@@ -215,6 +225,7 @@ mod tests {
             let window = |samples| Some(Window { samples, start: 0.0, sample_rate: 48_000.0 });
             let windows: Vec<Option<Window<'_>>> = parts.into_iter().map(window).chain([None]).collect();
             assert_eq!(arrival_times(&windows, &options), Ok(vec![None; 3]));
+            assert_eq!(arrival_times(&windows, &chirp), Ok(vec![None; 3]));
         }
         assert_eq!(arrival_times(&[], &options), Ok(Vec::new()));
         let wrong = TimeOptions { length: 1e9, ..options.clone() };

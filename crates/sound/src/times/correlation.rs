@@ -5,6 +5,7 @@ use super::spectrum::Spectrum;
 use crate::fourier::Fourier;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Values of the correlation for each period of the highest frequency, at least.
 const STEPS: f64 = 6.0;
@@ -26,49 +27,48 @@ pub(super) struct Peak {
 }
 
 /// The correlation of two channels, as a function of the delay of the first beside the second.
-pub(super) struct Correlation<'a> {
-    delays: &'a Delays,
+pub(super) struct Correlation {
     /// Cross-spectrum.
-    values: Vec<Complex64>,
+    pub(super) values: Vec<Complex64>,
     /// Step of frequencies, Hz, and the lowest one in steps.
-    step: f64,
-    first: usize,
+    pub(super) step: f64,
+    pub(super) first: usize,
 }
 
 /// The delays at which correlations are taken: multiples of a short one.
 pub(super) struct Delays {
-    fourier: Fourier,
+    pub(super) fourier: Arc<Fourier>,
     /// How many of either sign.
-    most: usize,
-    whitening: f64,
+    pub(super) most: usize,
 }
 
 impl Delays {
+    /// Those at which spectra are compared.
     pub(super) fn new(options: &TimeOptions) -> Delays {
         let periods = options.band[1] / Spectrum::step(options);
         let fourier = Fourier::new((STEPS * periods).ceil() as usize);
         // Spectra have steps that keep twice this from folding.
         let most = fourier.length() / 4;
-        Delays { fourier, most, whitening: options.whitening }
+        Delays { fourier: Arc::new(fourier), most }
     }
 }
 
-impl<'a> Correlation<'a> {
-    pub(super) fn new(a: &Spectrum, b: &Spectrum, delays: &'a Delays) -> Correlation<'a> {
+impl Correlation {
+    /// Of two channels: with cross-spectra divided by this power of their modulus.
+    pub(super) fn of(a: &Spectrum, b: &Spectrum, whitening: f64) -> Correlation {
         let whitened = |(a, b): (&Complex64, &Complex64)| {
             let product = a * b.conj();
             let modulus = product.norm();
-            if modulus > 0.0 { product / modulus.powf(delays.whitening) } else { product }
+            if modulus > 0.0 { product / modulus.powf(whitening) } else { product }
         };
-        let values = a.values.iter().zip(&b.values).map(whitened).collect();
-        Correlation { delays, values, step: a.step, first: a.first }
+        Correlation { values: a.values.iter().zip(&b.values).map(whitened).collect(), step: a.step, first: a.first }
     }
 
     /// The delays at which two channels agree, with at least this share of the largest correlation, the best first.
-    pub(super) fn peaks(&self, least: f64) -> Vec<Peak> {
-        let (length, most) = (self.delays.fourier.length(), self.delays.most);
+    pub(super) fn peaks(&self, least: f64, delays: &Delays) -> Vec<Peak> {
+        let (length, most) = (delays.fourier.length(), delays.most);
         let spacing = 1.0 / (length as f64 * self.step);
-        let all = self.delays.fourier.signal(self.padded(self.values.iter().copied()));
+        let all = delays.fourier.signal(self.padded(self.values.iter().copied()));
         // Of negative delays the values are at the end.
         let value = |k: usize| all[(length + k - most) % length];
         let largest = (0..=2 * most).map(value).fold(0.0, f64::max);
@@ -96,7 +96,7 @@ impl<'a> Correlation<'a> {
     }
 
     /// Slopes of what is odd about a delay, at all others on one side of it.
-    pub(super) fn odd_slopes(&self, delay: f64) -> Vec<f64> {
+    pub(super) fn odd_slopes(&self, delay: f64, delays: &Delays) -> Vec<f64> {
         let mut turn = Complex64::cis(TAU * self.first as f64 * self.step * delay);
         let by = Complex64::cis(TAU * self.step * delay);
         // The spectrum of what is odd is imaginary, and that of its slope is real.
@@ -105,7 +105,7 @@ impl<'a> Correlation<'a> {
             turn *= by;
             Complex64::from(TAU * (self.first + k) as f64 * self.step * odd)
         };
-        let Delays { fourier, most, .. } = self.delays;
+        let Delays { fourier, most } = delays;
         let mut slopes = fourier.signal(self.padded(self.values.iter().enumerate().map(slope)));
         slopes.truncate(*most);
         // A transform has half of each frequency, and is divided by its length.
@@ -134,7 +134,7 @@ impl<'a> Correlation<'a> {
     }
 
     /// The top of a peak that is at most this far from `middle`, by Newton's method between bounds.
-    fn top(&self, middle: f64, far: f64) -> f64 {
+    pub(super) fn top(&self, middle: f64, far: f64) -> f64 {
         let (mut low, mut high, mut delay) = (middle - far, middle + far, middle);
         for _ in 0..ROUNDS {
             let [_, slope, curvature] = self.at(delay);
@@ -180,7 +180,7 @@ mod tests {
                 Spectrum::new(&window, 0.009, &options)
             };
             let delays = Delays::new(&options);
-            let found = Correlation::new(&spectrum(0.01 + delay, rate), &spectrum(0.01, other), &delays).peaks(0.4);
+            let found = Correlation::of(&spectrum(0.01 + delay, rate), &spectrum(0.01, other), 0.7).peaks(0.4, &delays);
             assert!((found[0].delay - delay).abs() < 1e-7, "{rate} {other}: {found:?}");
         }
     }

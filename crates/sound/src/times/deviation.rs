@@ -11,21 +11,25 @@ use super::spectrum::Spectrum;
 /// The median of the amounts of a normal variable of standard deviation 1.
 const MEDIAN: f64 = 0.6745;
 
-/// Standard deviations of the times of channels, seconds, which have these delays beside their leading edges; at most `most`,
-/// as of a single channel, which has nothing to compare with.
-pub(super) fn deviations(channels: &[(&Spectrum, f64)], delays: &Delays, most: f64) -> Vec<f64> {
-    let deviation = |k: usize| {
+/// Standard deviations of the times of channels, seconds, which have these delays beside their leading edges; `None` of a
+/// single channel, which has nothing to compare with, and where there is no peak.
+pub(super) fn deviations(channels: &[(&Spectrum, f64)], whitening: f64, delays: &Delays) -> Vec<Option<f64>> {
+    let of = |k: usize| {
         let (own, delay) = channels[k];
         // Compared with itself, a channel would have less than it has.
         let others: Vec<(&Spectrum, f64)> = [&channels[..k], &channels[k + 1..]].concat();
         let sound = Spectrum::common(&others)?;
-        let correlation = Correlation::new(own, &sound, delays);
-        let sharpness = correlation.sharpness(delay);
-        let mut slopes: Vec<f64> = correlation.odd_slopes(delay).into_iter().map(f64::abs).collect();
-        // The median leaves out the peaks of echoes.
-        slopes.sort_by(f64::total_cmp);
-        let typical = slopes.get(slopes.len() / 2)? / MEDIAN;
-        (sharpness > 0.0).then(|| typical / sharpness)
+        deviation(&Correlation::of(own, &sound, whitening), delay, delays)
     };
-    (0..channels.len()).map(|k| deviation(k).filter(|sigma| *sigma <= most).unwrap_or(most)).collect()
+    (0..channels.len()).map(of).collect()
+}
+
+/// The standard deviation of the place of a peak, seconds, by what is within these delays of it.
+pub(super) fn deviation(correlation: &Correlation, delay: f64, delays: &Delays) -> Option<f64> {
+    let sharpness = correlation.sharpness(delay);
+    let mut slopes: Vec<f64> = correlation.odd_slopes(delay, delays).into_iter().map(f64::abs).collect();
+    // The median leaves out the peaks of echoes.
+    slopes.sort_by(f64::total_cmp);
+    let typical = slopes.get(slopes.len() / 2)? / MEDIAN;
+    (sharpness > 0.0).then(|| typical / sharpness).filter(|sigma| sigma.is_finite())
 }

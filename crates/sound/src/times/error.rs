@@ -1,5 +1,6 @@
 //! Why arrival times cannot be taken.
 
+use crate::signal::SignalError;
 use thiserror::Error;
 
 /// Why arrival times cannot be taken.
@@ -16,6 +17,9 @@ pub enum TimeError {
         /// What it may be.
         range: &'static str,
     },
+    /// The signal cannot be looked for.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
     /// What is compared has too many periods.
     #[error(
         "frequencies up to {highest} Hz over {length} s are too much to compare; lower the end of the band, or take less of \

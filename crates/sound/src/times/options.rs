@@ -1,6 +1,7 @@
 //! What arrival times are taken from, and how.
 
 use super::error::TimeError;
+use crate::signal::Signal;
 
 /// The part of a channel in which an event is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +18,9 @@ pub struct Window<'a> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TimeOptions {
+    /// What is known of the sounds. Of a signal that is known each channel tells the time by itself, and the options after the
+    /// band are not used. Default [`Signal::Unknown`].
+    pub signal: Signal,
     /// Lowest and highest frequency that is compared, Hz; the highest is at most 0.45 of each sample rate. Default 500 and
     /// 10,000.
     pub band: [f64; 2],
@@ -41,6 +45,7 @@ impl TimeOptions {
     /// # Errors
     /// The first one that is out of range.
     pub fn validate(&self) -> Result<(), TimeError> {
+        self.signal.validate()?;
         let [low, high] = self.band;
         let wrong = |name, value, range| Err(TimeError::Option { name, value, range });
         if !(1.0..=1e6).contains(&low) {
@@ -78,6 +83,7 @@ impl TimeOptions {
 impl Default for TimeOptions {
     fn default() -> TimeOptions {
         TimeOptions {
+            signal: Signal::Unknown,
             band: [500.0, 10_000.0],
             length: 0.004,
             before: 0.001,

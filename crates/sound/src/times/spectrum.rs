@@ -1,6 +1,7 @@
 //! What an event is made of, by frequency.
 
 use super::options::{TimeOptions, Window};
+use crate::format::HIGHEST;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -31,7 +32,7 @@ impl Spectrum {
         let step = Spectrum::step(options);
         // Frequencies are whole steps.
         let lowest = (low / step).ceil();
-        let count = (high.min(0.45 * rate) / step - lowest).max(0.0) as usize + 1;
+        let count = (high.min(HIGHEST * rate) / step - lowest).max(0.0) as usize + 1;
         let begin = edge - options.before - window.start;
         let first = (begin * rate).ceil().max(0.0) as usize;
         let samples = window.samples.get(first..).unwrap_or_default();

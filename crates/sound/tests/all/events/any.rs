@@ -2,7 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use sound::{EventError, EventOptions, event_windows, find_events};
+use sound::{EventError, EventOptions, ListenOptions, Signal, event_windows, find_events, listen};
 
 use super::written;
 
@@ -69,6 +69,17 @@ fn channel() -> impl Strategy<Value = Vec<f32>> {
     vec(part, 0..8).prop_map(|parts| parts.concat())
 }
 
+/// Signals, most of which can be looked for.
+fn signal() -> impl Strategy<Value = Signal> {
+    let chirp = (number(600.0..3000.0), number(600.0..3000.0), number(0.001..0.3));
+    let template = (vec(sample(), 0..300), number(8000.0..50_000.0));
+    prop_oneof![
+        6 => Just(Signal::Unknown),
+        2 => chirp.prop_map(|(from, to, seconds)| Signal::Chirp { from, to, seconds }),
+        2 => template.prop_map(|(samples, sample_rate)| Signal::Template { samples, sample_rate }),
+    ]
+}
+
 fn number(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![30 => range, 1 => any::<f64>(), 1 => prop_oneof![Just(0.0), Just(f64::NAN), Just(f64::INFINITY)]]
 }
@@ -83,9 +94,11 @@ proptest! {
         band in [number(1.0..500.0), number(600.0..5000.0)],
         (floor, threshold, weakest) in (number(0.5..5.0), number(1.5..8.0), number(0.0..20.0)),
         (extent, speed, dead) in (number(0.1..30.0), number(200.0..500.0), prop::option::of(number(0.15..0.3))),
+        signal in signal(),
         least in prop_oneof![1 => Just(0_usize), 12 => 1..4_usize],
     ) {
         let mut options = EventOptions::default();
+        options.signal = signal.clone();
         (options.band, options.floor_seconds, options.threshold, options.weakest_first_db) = (band, floor, threshold, weakest);
         (options.extent, options.speed, options.dead_time, options.least_channels) = (extent, speed, dead, least);
         let frames = channels.iter().map(Vec::len).max().unwrap_or(0);
@@ -101,6 +114,14 @@ proptest! {
         }
         for (event, samples) in event_windows([&path], &found).unwrap().enumerate() {
             prop_assert_eq!(samples.unwrap().event, event);
+        }
+        let mut all = ListenOptions::of(signal);
+        all.events = options;
+        // Bands may be too wide for times.
+        if let Ok(heard) = listen(&[&path], &all) {
+            let arrivals = heard.arrivals.iter().flatten().flatten();
+            let is_number = |x: &f64| x.is_finite();
+            prop_assert!(arrivals.into_iter().all(|arrival| is_number(&arrival.seconds) && arrival.sigma >= 0.0));
         }
         for event in &found.events {
             prop_assert!(event.onsets.iter().flatten().count() >= least);

@@ -1,9 +1,9 @@
 //! Impulses between samples: a windowed sinc, as a recorder's filter before its converter would make them.
 
 /// Samples that an impulse takes.
-pub(super) const TAPS: usize = 64;
+pub(crate) const TAPS: usize = 64;
 /// Samples before the one at or before an impulse.
-pub(super) const BEFORE: usize = TAPS / 2 - 1;
+pub(crate) const BEFORE: usize = TAPS / 2 - 1;
 /// Places between two samples that are tabulated. Between them it is linear, with errors below pi^2 / 8 of the square
 /// of their distance: 5e-6.
 const PHASES: usize = 512;
@@ -16,13 +16,13 @@ const CUTOFF: f64 = 0.92;
 const SHAPE: f64 = 7.857;
 
 /// The table of impulses.
-pub(super) struct Kernel {
+pub(crate) struct Kernel {
     /// One row for each place between two samples, and one more.
     rows: Vec<[f64; TAPS]>,
 }
 
 impl Kernel {
-    pub(super) fn new() -> Kernel {
+    pub(crate) fn new() -> Kernel {
         let row = |phase: usize| {
             let fraction = phase as f64 / PHASES as f64;
             std::array::from_fn(|tap| impulse(tap as f64 - BEFORE as f64 - fraction))
@@ -32,7 +32,7 @@ impl Kernel {
 
     /// Adds an impulse of this size at a place in `signal`, samples from its first; nothing if it would not lie wholly
     /// in it.
-    pub(super) fn add(&self, signal: &mut [f64], place: f64, size: f64) {
+    pub(crate) fn add(&self, signal: &mut [f64], place: f64, size: f64) {
         let whole = place.floor();
         if !(whole >= BEFORE as f64 && whole <= signal.len() as f64) {
             return;
