@@ -40,7 +40,7 @@ fn events(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 10)]
 fn arrivals(bencher: Bencher<'_, '_>) {
     let (_folder, path) = recorded(CLAP, 20.0);
-    bencher.bench_local(|| listen(&[black_box(&path)], &ListenOptions::default()));
+    bencher.bench_local(|| listen(&[vec![black_box(&path)]], &ListenOptions::default()));
 }
 
 /// Chirps of half a second that are known, as loud as the noise.
@@ -49,5 +49,5 @@ fn chirps(bencher: Bencher<'_, '_>) {
     let (from, to) = (1000.0, 6000.0);
     let (_folder, path) = recorded(Sound::Chirp { from, to, length: 0.5 }, 0.0);
     let options = ListenOptions::of(Signal::Chirp { from, to, seconds: 0.5 });
-    bencher.bench_local(|| listen(&[black_box(&path)], &options));
+    bencher.bench_local(|| listen(&[vec![black_box(&path)]], &options));
 }

@@ -20,5 +20,6 @@ mod windows;
 pub use error::EventError;
 pub use event::{DropReason, DroppedEvent, Event, EventChannel, Events, Onset};
 pub use find::find_events;
+pub(crate) use find::{events_of, hear};
 pub use options::EventOptions;
 pub use windows::{ChannelSamples, EventSamples, EventWindows, event_windows};

@@ -36,8 +36,8 @@
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
 //! in each channel (`edge`), delays between each two (`spectrum`, `correlation`), those that agree (`consistent`), and how
 //! well they are known (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
-//! alone (times/known.rs). Events begin with events/find.rs, and `listen` puts both together;
-//! `picture` draws them.
+//! alone (times/known.rs). Events begin with events/find.rs, those of recorders that were started apart with
+//! recorders/gathered.rs, and `listen` puts all together; `picture` draws them.
 
 mod error;
 mod events;
@@ -49,6 +49,7 @@ mod kernel;
 mod kind;
 mod listen;
 mod picture;
+mod recorders;
 mod recording;
 mod room;
 mod signal;
@@ -65,6 +66,7 @@ pub use events::{
 pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
 pub use listen::{Heard, ListenError, ListenOptions, listen};
 pub use picture::{Trace, spectrogram, waveforms};
+pub use recorders::{Alignment, AlignmentOptions, RecorderAlignment, Unaligned, UnalignedReason};
 pub use recording::Recording;
 pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
 pub use signal::{Signal, SignalError, TemplateError};

@@ -7,13 +7,17 @@ use std::path::Path;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::events::{EventChannel, EventError, EventOptions, Events, event_windows, find_events};
+use crate::events::{ChannelSamples, EventChannel, EventError, EventOptions, Events, event_windows};
+use crate::recorders::{Alignment, AlignmentOptions, Gathered, OwnEvents, RecorderAlignment};
 use crate::signal::Signal;
 use crate::times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
 
 /// Seconds before an onset that tell the noise, and after it, or after the signal, that are looked at.
 const BEFORE: f64 = 0.05;
 const AFTER: f64 = 0.05;
+
+/// Most recorders: each two are compared, and each three.
+const MOST_RECORDERS: usize = 128;
 
 /// Options of [`listen`].
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,6 +27,8 @@ pub struct ListenOptions {
     pub events: EventOptions,
     /// How their arrival times are taken.
     pub times: TimeOptions,
+    /// How recorders are aligned that were started apart.
+    pub alignment: AlignmentOptions,
 }
 
 impl ListenOptions {
@@ -30,7 +36,7 @@ impl ListenOptions {
     pub fn of(signal: Signal) -> ListenOptions {
         let (mut events, mut times) = (EventOptions::default(), TimeOptions::default());
         (events.signal, times.signal) = (signal.clone(), signal);
-        ListenOptions { events, times }
+        ListenOptions { events, times, ..ListenOptions::default() }
     }
 }
 
@@ -38,10 +44,16 @@ impl ListenOptions {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Heard {
-    /// The events, the channels, and what was dropped.
+    /// The events, the channels of all recorders one after the other, and what was dropped. Times are those of the clock of
+    /// the reference, the first recorder that is aligned.
     pub events: Events,
-    /// Of each event, the arrival in each channel; `None` where the channel did not hear it.
+    /// Of each event, the arrival in each channel; `None` where the channel did not hear it. Times are those of the clock of
+    /// the channel's own recorder, which is not touched: seconds from the first sample of its recordings.
     pub arrivals: Vec<Vec<Option<Arrival>>>,
+    /// Of each channel, the number of its recorder among those that were given, from 0.
+    pub recorders: Vec<usize>,
+    /// When each recorder was started, and which ones cannot be told: their channels have no arrivals.
+    pub alignment: Alignment,
 }
 
 /// Why recordings cannot be listened to.
@@ -54,13 +66,30 @@ pub enum ListenError {
     /// Arrival times cannot be taken.
     #[error(transparent)]
     Times(#[from] TimeError),
+    /// A recorder without files.
+    #[error("recorder {number} has no files; give at least one for each recorder")]
+    NoFiles {
+        /// Number of the recorder, from 1.
+        number: usize,
+    },
+    /// More recorders than are compared, each with each.
+    #[error("there are {found} recorders, and at most {most} are aligned; take some of them at a time")]
+    TooManyRecorders {
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
 }
 
-/// Finds the sounds in recordings that began together and have one clock, such as the files of one recorder, and when each
-/// channel hears them. Each file is read twice, block by block.
+/// Finds the sounds in recordings, and when each channel hears them. Each recorder has some files, which began together and
+/// have one clock; recorders may have been started apart, and each clock have its own rate. Where there are several, they are
+/// aligned by the sounds that they have in common, to tell which sounds are the same; arrival times are not changed by
+/// that. Each file is read twice, block by block.
 ///
 /// # Errors
-/// If an option is out of range, or a file cannot be read.
+/// If an option is out of range, a recorder has no files, there are more than 128, or a file cannot be read. A recorder that
+/// cannot be aligned is no error: [`Heard::alignment`] names it.
 ///
 /// ```
 /// let mut options = sound::RoomOptions::default();
@@ -71,68 +100,131 @@ pub enum ListenError {
 /// # let path = folder.join("claps.wav");
 /// sound::write_wav(&path, made.sample_rate, &made.channels, sound::SampleFormat::Int24)?;
 ///
-/// let heard = sound::listen(&[&path], &sound::ListenOptions::default())?;
+/// // One recorder, which has one file.
+/// let heard = sound::listen(&[vec![&path]], &sound::ListenOptions::default())?;
 /// assert_eq!((heard.arrivals.len(), heard.arrivals[0].len()), (3, 8));
 /// // A list that `tdoa calibrate --units s` reads.
 /// assert!(heard.list().starts_with("receiver,event,time_s,sigma_s\nclaps:1,1,"));
 /// # std::fs::remove_dir_all(folder)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn listen<P: AsRef<Path>>(paths: &[P], options: &ListenOptions) -> Result<Heard, ListenError> {
+pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> Result<Heard, ListenError> {
     options.times.validate()?;
-    let events = find_events(paths, &options.events)?;
-    let mut arrivals = Vec::with_capacity(events.events.len());
-    for samples in event_windows(paths, &events)? {
-        let samples = samples?;
-        let Some(event) = events.events.get(samples.event) else { break };
-        let windows = samples.channels.iter().zip(&event.onsets).map(|(channel, onset)| {
-            let (rate, onset) = (f64::from(channel.sample_rate), onset.as_ref()?.seconds - channel.seconds);
-            // Beyond what there is, a cast ends at its bounds.
-            let begin = ((onset - BEFORE) * rate) as usize;
-            let after = AFTER + options.times.signal.seconds();
-            let end = (((onset + after) * rate) as usize).min(channel.samples.len());
-            let part = channel.samples.get(begin..end)?;
-            Some(Window { samples: part, start: channel.seconds + begin as f64 / rate, sample_rate: rate })
-        });
-        arrivals.push(arrival_times(&windows.collect::<Vec<_>>(), &options.times)?);
+    if let Some(number) = (1..).zip(recorders).find_map(|(number, files)| files.is_empty().then_some(number)) {
+        return Err(ListenError::NoFiles { number });
     }
-    Ok(Heard { events, arrivals })
+    if recorders.len() > MOST_RECORDERS {
+        return Err(ListenError::TooManyRecorders { found: recorders.len(), most: MOST_RECORDERS });
+    }
+    let gathered = Gathered::new(recorders, &options.events, &options.alignment)?;
+    // Each recorder reads the same events, by its own clock.
+    let own: Vec<OwnEvents<'_>> = gathered.own();
+    let mut readers = Vec::with_capacity(own.len());
+    for own in &own {
+        readers.push(event_windows(recorders.get(own.clock.recorder).into_iter().flatten(), &own.events)?);
+    }
+    let mut arrivals = Vec::with_capacity(gathered.events.events.len());
+    for j in 0..gathered.events.events.len() {
+        let mut parts: Vec<Option<Part<'_>>> = gathered.recorders.iter().map(|_| None).collect();
+        for (own, reader) in own.iter().zip(&mut readers) {
+            let Some(samples) = reader.next().transpose()? else { continue };
+            let onsets = own.events.events.get(j).into_iter().flat_map(|event| &event.onsets);
+            for ((&channel, samples), onset) in own.channels.iter().zip(samples.channels).zip(onsets) {
+                parts[channel] = onset.map(|onset| Part { clock: own.clock, samples, onset: onset.seconds });
+            }
+        }
+        let signal = &options.times.signal;
+        let windows: Vec<Option<Window<'_>>> = parts.iter().map(|part| part.as_ref()?.window(signal)).collect();
+        let found = arrival_times(&windows, &options.times)?;
+        let arrival = |(arrival, part): (Option<Arrival>, &Option<Part<'_>>)| Some(part.as_ref()?.own(arrival?));
+        arrivals.push(found.into_iter().zip(&parts).map(arrival).collect());
+    }
+    let Gathered { events, recorders, alignment } = gathered;
+    Ok(Heard { events, arrivals, recorders, alignment })
+}
+
+/// The part of a channel in which an event is.
+struct Part<'a> {
+    clock: &'a RecorderAlignment,
+    samples: ChannelSamples,
+    /// By the clock of the recorder, seconds.
+    onset: f64,
+}
+
+impl Part<'_> {
+    /// What is compared with other channels, by the clock of the reference.
+    fn window(&self, signal: &Signal) -> Option<Window<'_>> {
+        let ChannelSamples { seconds, sample_rate, samples } = &self.samples;
+        let (rate, onset) = (f64::from(*sample_rate), self.onset - seconds);
+        // Beyond what there is, a cast ends at its bounds.
+        let begin = ((onset - BEFORE) * rate) as usize;
+        let end = (((onset + AFTER + signal.seconds()) * rate) as usize).min(samples.len());
+        let part = samples.get(begin..end)?;
+        let start = self.clock.common(seconds + begin as f64 / rate);
+        Some(Window { samples: part, start, sample_rate: self.clock.sample_rate(rate) })
+    }
+
+    /// The arrival by the recorder's own clock, from one by that of the reference.
+    fn own(&self, arrival: Arrival) -> Arrival {
+        let own = |seconds: f64| self.clock.own(seconds);
+        let alternatives = arrival.alternatives.into_iter().map(own).collect();
+        Arrival { seconds: own(arrival.seconds), alternatives, ..arrival }
+    }
 }
 
 impl Heard {
     /// A name for each channel: that of its file, without the folder and the ending, and the number of the channel.
     /// Files of one name have their place among all files before it.
     pub fn names(&self) -> Vec<String> {
-        let stem =
-            |file: &str| Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
         // Each file has a first channel; one that is given twice is two.
-        let files: Vec<&EventChannel> = self.events.channels.iter().filter(|channel| channel.channel == 1).collect();
-        let stems: HashSet<String> = files.iter().map(|channel| stem(&channel.file)).collect();
-        let is_told = stems.len() == files.len();
-        let mut place = 0;
+        let is_first = |channel: &&EventChannel| channel.channel == 1;
+        let files = told_apart(self.events.channels.iter().filter(is_first).map(|channel| channel.file.as_str()));
+        let mut file = 0;
         let name = |channel: &EventChannel| {
-            place += usize::from(channel.channel == 1);
-            let stem = stem(&channel.file).replace([',', '"', '\n'], " ");
-            if is_told { format!("{stem}:{}", channel.channel) } else { format!("{place} {stem}:{}", channel.channel) }
+            file += usize::from(channel.channel == 1);
+            let name = file.checked_sub(1).and_then(|file| files.get(file)).map_or("", String::as_str);
+            format!("{name}:{}", channel.channel)
         };
         self.events.channels.iter().map(name).collect()
     }
 
+    /// A name for the recorder of each channel: that of its first file, without the folder and the ending. Recorders of one
+    /// name have their number before it.
+    pub fn recorder_names(&self) -> Vec<String> {
+        let firsts = (0..=self.recorders.iter().copied().max().unwrap_or(0))
+            .filter_map(|recorder| self.recorders.iter().position(|&owner| owner == recorder));
+        let names = told_apart(firsts.filter_map(|k| Some(self.events.channels.get(k)?.file.as_str())));
+        self.recorders.iter().map(|&recorder| names.get(recorder).cloned().unwrap_or_default()).collect()
+    }
+
     /// A table of the arrivals, one a line: `receiver,event,time_s,sigma_s`, with [names](Heard::names) of channels, numbers
-    /// of events from 1, and seconds.
+    /// of events from 1, and seconds by the clock of the channel's recorder. Of several recorders there is a further column
+    /// `recorder` with their [names](Heard::recorder_names).
     pub fn list(&self) -> String {
-        let names = self.names();
-        let mut text = String::from("receiver,event,time_s,sigma_s\n");
+        let (names, recorders) = (self.names(), self.recorder_names());
+        let are_several = self.recorders.iter().any(|&recorder| recorder > 0);
+        let mut text = String::from("receiver,event,time_s,sigma_s");
+        text += if are_several { ",recorder\n" } else { "\n" };
         for (j, arrivals) in self.arrivals.iter().enumerate() {
-            for (name, arrival) in names.iter().zip(arrivals) {
+            for ((name, recorder), arrival) in names.iter().zip(&recorders).zip(arrivals) {
                 if let Some(Arrival { seconds, sigma, .. }) = arrival {
                     // Writing to a string does not fail.
-                    let _ = writeln!(text, "{name},{},{seconds:.9},{sigma:.3e}", j + 1);
+                    let _ = write!(text, "{name},{},{seconds:.9},{sigma:.3e}", j + 1);
+                    let _ = if are_several { writeln!(text, ",{recorder}") } else { writeln!(text) };
                 }
             }
         }
         text
     }
+}
+
+/// Names of files without the folder and the ending; where two are the same, with their place, from 1, before them.
+fn told_apart<'a>(files: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let stem = |file: &str| Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
+    let stems: Vec<String> = files.map(|file| stem(file).replace([',', '"', '\n'], " ")).collect();
+    let are_told = stems.iter().collect::<HashSet<_>>().len() == stems.len();
+    let name = |(place, stem): (usize, String)| if are_told { stem } else { format!("{place} {stem}") };
+    (1..).zip(stems).map(name).collect()
 }
 
 #[cfg(test)]
@@ -152,7 +244,7 @@ mod tests {
         for (path, channels) in paths.iter().zip(made.channels.chunks(5)) {
             write_wav(path, made.sample_rate, channels, SampleFormat::Int16).unwrap();
         }
-        let heard = listen(&paths, &ListenOptions::default()).unwrap();
+        let heard = listen(&[paths.to_vec()], &ListenOptions::default()).unwrap();
         assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (8, 0));
         assert_eq!(heard.names()[4..6], ["left:5", "right:1"]);
         let mut twice = heard.clone();
@@ -199,7 +291,7 @@ mod tests {
                 3 => Signal::read(&template).unwrap(),
                 _ => Signal::Chirp { from, to, seconds: length },
             };
-            let heard = listen(&[&path], &ListenOptions::of(signal)).unwrap();
+            let heard = listen(&[vec![&path]], &ListenOptions::of(signal)).unwrap();
             assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (8, 0));
             let found = heard.arrivals.iter().enumerate();
             let found = found.flat_map(|(j, all)| all.iter().zip(&made.truth.arrivals).map(move |(a, t)| (a, t[j])));

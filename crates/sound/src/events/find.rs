@@ -50,6 +50,18 @@ pub fn find_events<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     options: &EventOptions,
 ) -> Result<Events, EventError> {
+    let (channels, onsets) = hear(paths, options)?;
+    Ok(events_of(channels, &onsets, options))
+}
+
+/// The channels of all files, and the onsets of each: a pass over each file.
+///
+/// # Errors
+/// Those of [`find_events`].
+pub(crate) fn hear<P: AsRef<Path>>(
+    paths: impl IntoIterator<Item = P>,
+    options: &EventOptions,
+) -> Result<(Vec<EventChannel>, Vec<Vec<Onset>>), EventError> {
     options.validate()?;
     // All are opened first: what is wrong with the last one is said before the first one is read.
     let recordings = Recording::open_all(paths)?;
@@ -76,10 +88,15 @@ pub fn find_events<P: AsRef<Path>>(
             onsets.push(of_channel);
         }
     }
-    let Grouped { events, dropped, uses } = group(&onsets, options);
+    Ok((channels, onsets))
+}
+
+/// The events of these channels, whose onsets are by one clock.
+pub(crate) fn events_of(mut channels: Vec<EventChannel>, onsets: &[Vec<Onset>], options: &EventOptions) -> Events {
+    let Grouped { events, dropped, uses } = group(onsets, options);
     for (channel, (used, echoes)) in channels.iter_mut().zip(uses) {
         (channel.used, channel.echoes) = (used, echoes);
         channel.dropped = channel.heard.saturating_sub(used + echoes);
     }
-    Ok(Events { events, channels, dropped })
+    Events { events, channels, dropped }
 }

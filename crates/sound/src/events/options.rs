@@ -91,12 +91,12 @@ impl EventOptions {
     pub(super) const LEAST_WIDTH: f64 = 100.0;
 
     /// How long sound takes over the extent, seconds.
-    pub(super) fn spread(&self) -> f64 {
+    pub(crate) fn spread(&self) -> f64 {
         self.extent / self.speed
     }
 
     /// For how long after its first onset of an event a channel hears nothing but echoes, seconds.
-    pub(super) fn dead_time(&self) -> f64 {
+    pub(crate) fn dead_time(&self) -> f64 {
         self.dead_time.unwrap_or(self.spread().max(DEAD_TIME))
     }
 }

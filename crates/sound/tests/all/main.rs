@@ -4,6 +4,7 @@ mod bytes;
 mod events;
 mod flac;
 mod hostile;
+mod recorders;
 mod room;
 mod survey;
 mod wav;

@@ -118,7 +118,7 @@ proptest! {
         let mut all = ListenOptions::of(signal);
         all.events = options;
         // Bands may be too wide for times.
-        if let Ok(heard) = listen(&[&path], &all) {
+        if let Ok(heard) = listen(&[vec![&path]], &all) {
             let arrivals = heard.arrivals.iter().flatten().flatten();
             let is_number = |x: &f64| x.is_finite();
             prop_assert!(arrivals.into_iter().all(|arrival| is_number(&arrival.seconds) && arrival.sigma >= 0.0));
