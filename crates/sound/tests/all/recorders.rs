@@ -112,6 +112,28 @@ fn claps_at_regular_times_are_ambiguous() {
 }
 
 #[test]
+fn recorders_begin_late_and_end_early() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut made = room(&[(0.0, 0.0), (8.0, 50.0)], uneven(24, 0.0, 6), 7);
+    // The first recorder ends after the 18th clap.
+    let end = made.truth.arrivals[0][17] + 0.4;
+    made.channels[..2].iter_mut().for_each(|channel| channel.truncate((48_000.0 * end) as usize));
+    let recorders = written(&folder, "here", &made);
+    let mut options = ListenOptions::default();
+    options.events.least_channels = 2;
+    let heard = listen(&recorders, &options).unwrap();
+    assert_eq!((heard.alignment.recorders.len(), heard.arrivals.len()), (2, 24), "{:?}", heard.alignment);
+    for (j, arrivals) in heard.arrivals.iter().enumerate() {
+        for ((arrival, truth), &recorder) in arrivals.iter().zip(&made.truth.arrivals).zip(&heard.recorders) {
+            let is_running = if recorder == 0 { truth[j] < end } else { truth[j] > 0.0 };
+            assert_eq!(arrival.is_some(), is_running, "clap {} by recorder {recorder}", j + 1);
+            let error = arrival.as_ref().map_or(0.0, |arrival| arrival.seconds - truth[j]);
+            assert!(error.abs() < 1e-3, "clap {} by recorder {recorder}: {error}", j + 1);
+        }
+    }
+}
+
+#[test]
 fn recorders_need_files() {
     let none: [Vec<PathBuf>; 0] = [];
     assert!(matches!(listen(&none, &ListenOptions::default()), Err(ListenError::Events(_))));
