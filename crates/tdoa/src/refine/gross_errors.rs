@@ -21,6 +21,16 @@ pub(crate) struct GrossErrors {
     share: f64,
 }
 
+/// Measurements that are good.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Good {
+    pub(crate) count: usize,
+    /// Sum of the squares of their residuals, each times its precision, and of what else is fitted with them.
+    pub(crate) squares: f64,
+    /// Sum of the logarithms of their precisions: a precise one is dense in metres, which gross errors are not.
+    pub(crate) log_precisions: f64,
+}
+
 impl GrossErrors {
     /// Of so many measurements, anywhere within `width` metres.
     pub(crate) fn new(all: usize, width: f64) -> GrossErrors {
@@ -44,12 +54,12 @@ impl GrossErrors {
         self.share = (self.all - good as f64).max(0.5) / self.all;
     }
 
-    /// Logarithm of the density of all measurements, of which so many are good, with this sum of squares and
-    /// deviation; `fitted` unknowns are integrated over, each of which takes one normal factor.
-    pub(crate) fn log_density(&self, good: usize, fitted: usize, squares: f64, deviation: f64) -> f64 {
-        let (count, left) = (good as f64, good.saturating_sub(fitted) as f64);
-        let normal = count * ((1.0 - self.share).ln() - 0.5 * TAU.ln()) - left * deviation.ln();
-        normal - 0.5 * squares / deviation.powi(2) + (self.all - count) * (self.share / self.width).ln()
+    /// Logarithm of the density of all measurements per metre of each: of those that are [`Good`] and the others. `fitted`
+    /// unknowns are integrated over, each of which takes one normal factor.
+    pub(crate) fn log_density(&self, good: &Good, fitted: usize, deviation: f64) -> f64 {
+        let (count, left) = (good.count as f64, good.count.saturating_sub(fitted) as f64);
+        let normal = count * ((1.0 - self.share).ln() - 0.5 * TAU.ln()) - left * deviation.ln() + good.log_precisions;
+        normal - 0.5 * good.squares / deviation.powi(2) + (self.all - count) * (self.share / self.width).ln()
     }
 }
 
@@ -66,29 +76,48 @@ pub(crate) fn log_density(
     let mut errors = GrossErrors::new(residuals.len(), width);
     let (mut deviation, mut density) = (first, f64::NEG_INFINITY);
     for _ in 0..SORTINGS {
-        let good = residuals.iter().filter(|(e, precision)| e.abs() <= errors.limit(deviation, *precision));
-        let (count, squares) = good.fold((0usize, 0.0), |(count, squares), (e, _)| (count + 1, squares + e * e));
-        let left = count.saturating_sub(unknowns);
-        deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
-        errors.count(count);
-        density = errors.log_density(count, unknowns, squares, deviation);
+        let mut good = Good::default();
+        for (e, precision) in residuals.iter().filter(|(e, precision)| e.abs() <= errors.limit(deviation, *precision)) {
+            good.count += 1;
+            good.squares += e * e;
+            good.log_precisions += precision.ln();
+        }
+        let left = good.count.saturating_sub(unknowns);
+        deviation = known.unwrap_or_else(|| errors.deviation(good.squares, left));
+        errors.count(good.count);
+        density = errors.log_density(&good, unknowns, deviation);
     }
     density
 }
 
 #[cfg(test)]
 mod tests {
-    use super::GrossErrors;
+    use super::{Good, GrossErrors, log_density};
 
     #[test]
     fn densities_meet_at_the_limit() {
         let mut errors = GrossErrors::new(100, 7.0);
         errors.count(90);
-        let limit = errors.limit(0.01, 1.0);
-        // At the limit, a measurement is as likely good as gross.
-        let good = errors.log_density(91, 0, limit.powi(2), 0.01);
-        let gross = errors.log_density(90, 0, 0.0, 0.01);
-        assert!((good - gross).abs() < 1e-9, "{good} {gross}");
-        assert!((0.03..0.06).contains(&limit), "{limit}");
+        // Measurements of 1 cm, by the common deviation and by their own.
+        for (deviation, precision) in [(0.01, 1.0), (1.0, 100.0), (0.1, 10.0)] {
+            let limit = errors.limit(deviation, precision);
+            // At the limit, a measurement is as likely good as gross.
+            let one = Good { count: 91, squares: limit.powi(2), log_precisions: f64::ln(precision) };
+            let good = errors.log_density(&one, 0, deviation);
+            let gross = errors.log_density(&Good { count: 90, ..Good::default() }, 0, deviation);
+            assert!((good - gross).abs() < 1e-9, "{good} {gross}");
+            assert!((0.03..0.06).contains(&(limit / precision)), "{limit}");
+        }
+    }
+
+    /// What is known of each measurement by itself says the same as one deviation for all.
+    #[test]
+    fn a_density_does_not_depend_on_who_says_the_deviation() {
+        let residuals: Vec<f64> = (0..40).map(|k| if k % 8 == 0 { 0.5 } else { 0.01 * f64::from(k % 5 - 2) }).collect();
+        let with = |precision: f64| residuals.iter().map(|e| (e * precision, precision)).collect::<Vec<_>>();
+        let common = log_density(&with(1.0), 10, 0.01, Some(0.01), 7.0);
+        let own = log_density(&with(100.0), 10, 1.0, Some(1.0), 7.0);
+        // Each unknown that is fitted takes a factor in the unit of the measurements.
+        assert!((common - own - 10.0 * f64::ln(0.01)).abs() < 1e-9, "{common} {own}");
     }
 }

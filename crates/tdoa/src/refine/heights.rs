@@ -15,7 +15,7 @@
 
 use super::cancel::{Cancelled, check};
 use super::covariance::covariance;
-use super::gross_errors::GrossErrors;
+use super::gross_errors::{Good, GrossErrors};
 use super::refiner::{NetworkRefiner, RefineOptions, SEARCH};
 use crate::loss::SEARCH_NU;
 use crate::network::Network;
@@ -242,7 +242,9 @@ impl<const D: usize> Heights<D> {
             let Some(determinant) = refiner.log_determinant_at(&now.network)? else { return Ok(None) };
             // Densities of positions over those of the measurements, as the equations have both in one unit.
             let prior: f64 = placed.pins().iter().map(|pin| pin.precision.ln()).sum();
-            let density = errors.log_density(kept.len(), placed.unknown_times(), squares, deviation);
+            let log_precisions = kept.all().iter().map(|o| o.precision.ln()).sum();
+            let good = Good { count: kept.len(), squares, log_precisions };
+            let density = errors.log_density(&good, placed.unknown_times(), deviation);
             return Ok(Some(density + prior - 0.5 * determinant));
         }
     }
