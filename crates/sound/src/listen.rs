@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::events::{ChannelSamples, EventChannel, EventError, EventOptions, Events, event_windows};
 use crate::recorders::{Alignment, AlignmentOptions, Gathered, OwnEvents, RecorderAlignment};
 use crate::signal::Signal;
+use crate::survey::ChannelSurvey;
 use crate::times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
 
 /// Seconds before an onset that tell the noise, and after it, or after the signal, that are looked at.
@@ -29,6 +30,9 @@ pub struct ListenOptions {
     pub times: TimeOptions,
     /// How recorders are aligned that were started apart.
     pub alignment: AlignmentOptions,
+    /// Seconds before and after each onset that are kept in [`Heard::samples`], for pictures: at most 0.05, and after it the length
+    /// of a known signal more. Default `None`: nothing is kept.
+    pub keep: Option<[f64; 2]>,
 }
 
 impl ListenOptions {
@@ -54,6 +58,10 @@ pub struct Heard {
     pub recorders: Vec<usize>,
     /// When each recorder was started, and which ones cannot be told: their channels have no arrivals.
     pub alignment: Alignment,
+    /// Of each event, the samples of each channel about its onset, by the clock of the channel's own recorder, if
+    /// [`ListenOptions::keep`] asks for them.
+    #[serde(skip)]
+    pub samples: Vec<Vec<Option<ChannelSamples>>>,
 }
 
 /// Why recordings cannot be listened to.
@@ -123,7 +131,7 @@ pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> 
     for own in &own {
         readers.push(event_windows(recorders.get(own.clock.recorder).into_iter().flatten(), &own.events)?);
     }
-    let mut arrivals = Vec::with_capacity(gathered.events.events.len());
+    let (mut arrivals, mut samples) = (Vec::with_capacity(gathered.events.events.len()), Vec::new());
     for j in 0..gathered.events.events.len() {
         let mut parts: Vec<Option<Part<'_>>> = gathered.recorders.iter().map(|_| None).collect();
         for (own, reader) in own.iter().zip(&mut readers) {
@@ -138,9 +146,12 @@ pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> 
         let found = arrival_times(&windows, &options.times)?;
         let arrival = |(arrival, part): (Option<Arrival>, &Option<Part<'_>>)| Some(part.as_ref()?.own(arrival?));
         arrivals.push(found.into_iter().zip(&parts).map(arrival).collect());
+        if let Some(keep) = options.keep {
+            samples.push(parts.iter().map(|part| part.as_ref()?.kept(keep)).collect());
+        }
     }
     let Gathered { events, recorders, alignment } = gathered;
-    Ok(Heard { events, arrivals, recorders, alignment })
+    Ok(Heard { events, arrivals, recorders, alignment, samples })
 }
 
 /// The part of a channel in which an event is.
@@ -154,14 +165,25 @@ struct Part<'a> {
 impl Part<'_> {
     /// What is compared with other channels, by the clock of the reference.
     fn window(&self, signal: &Signal) -> Option<Window<'_>> {
+        let (seconds, samples) = self.about([BEFORE, AFTER + signal.seconds()])?;
+        let sample_rate = self.clock.sample_rate(f64::from(self.samples.sample_rate));
+        Some(Window { samples, start: self.clock.common(seconds), sample_rate })
+    }
+
+    /// What is kept for pictures: the samples from so long before the onset to so long after it.
+    fn kept(&self, around: [f64; 2]) -> Option<ChannelSamples> {
+        let (seconds, samples) = self.about(around)?;
+        Some(ChannelSamples { seconds, sample_rate: self.samples.sample_rate, samples: samples.to_vec() })
+    }
+
+    /// The samples from so long before the onset to so long after it, as far as there are any, and when they begin.
+    fn about(&self, [before, after]: [f64; 2]) -> Option<(f64, &[f32])> {
         let ChannelSamples { seconds, sample_rate, samples } = &self.samples;
         let (rate, onset) = (f64::from(*sample_rate), self.onset - seconds);
         // Beyond what there is, a cast ends at its bounds.
-        let begin = ((onset - BEFORE) * rate) as usize;
-        let end = (((onset + AFTER + signal.seconds()) * rate) as usize).min(samples.len());
-        let part = samples.get(begin..end)?;
-        let start = self.clock.common(seconds + begin as f64 / rate);
-        Some(Window { samples: part, start, sample_rate: self.clock.sample_rate(rate) })
+        let begin = ((onset - before) * rate) as usize;
+        let end = (((onset + after) * rate) as usize).min(samples.len());
+        Some((seconds + begin as f64 / rate, samples.get(begin..end)?))
     }
 
     /// The arrival by the recorder's own clock, from one by that of the reference.
@@ -195,6 +217,30 @@ impl Heard {
             .filter_map(|recorder| self.recorders.iter().position(|&owner| owner == recorder));
         let names = told_apart(firsts.filter_map(|k| Some(self.events.channels.get(k)?.file.as_str())));
         self.recorders.iter().map(|&recorder| names.get(recorder).cloned().unwrap_or_default()).collect()
+    }
+
+    /// What may be wrong, in words: with channels, of which this is the [survey](crate::survey) over all files, with recorders that
+    /// cannot be aligned, and sounds that were left out.
+    pub fn warnings(&self, survey: &[ChannelSurvey]) -> Vec<String> {
+        let of_channel = |(name, channel): (String, &ChannelSurvey)| {
+            channel.problems().into_iter().map(move |problem| format!("channel {name} {problem}"))
+        };
+        let mut all: Vec<String> = self.names().into_iter().zip(survey).flat_map(of_channel).collect();
+        all.extend(self.alignment.unaligned.iter().map(ToString::to_string));
+        all.extend(self.events.dropped.iter().map(ToString::to_string));
+        all
+    }
+
+    /// How many sounds were heard, in words.
+    pub fn counts(&self) -> String {
+        let onsets: usize = self.events.channels.iter().map(|channel| channel.heard).sum();
+        format!(
+            "{} channels heard {onsets} sounds; {} events with {} arrivals, {} sounds left out",
+            self.events.channels.len(),
+            self.arrivals.len(),
+            self.arrivals.iter().flatten().flatten().count(),
+            self.events.dropped.len()
+        )
     }
 
     /// A table of the arrivals, one a line: `receiver,event,time_s,sigma_s`, with [names](Heard::names) of channels, numbers
@@ -244,8 +290,12 @@ mod tests {
         for (path, channels) in paths.iter().zip(made.channels.chunks(5)) {
             write_wav(path, made.sample_rate, channels, SampleFormat::Int16).unwrap();
         }
-        let heard = listen(&[paths.to_vec()], &ListenOptions::default()).unwrap();
+        let options = ListenOptions { keep: Some([0.002, 0.008]), ..ListenOptions::default() };
+        let heard = listen(&[paths.to_vec()], &options).unwrap();
         assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (8, 0));
+        let kept = heard.samples[3][9].as_ref().unwrap();
+        let onset = heard.events.events[3].onsets[9].unwrap().seconds;
+        assert!(kept.samples.len().abs_diff(480) <= 1 && (kept.seconds - onset + 0.002).abs() < 3e-5);
         assert_eq!(heard.names()[4..6], ["left:5", "right:1"]);
         let mut twice = heard.clone();
         twice.events.channels[5..]
@@ -264,6 +314,14 @@ mod tests {
         // What brings a network to millimetres: 98 % within 30 us, half within 2.
         assert!(errors[78] < 30e-6 && errors[40] < 2e-6, "{} {}", errors[78], errors[40]);
         assert_eq!(heard.list().lines().count(), 81);
+        assert_eq!(heard.counts(), "10 channels heard 80 sounds; 8 events with 80 arrivals, 0 sounds left out");
+        let mut survey = crate::survey(&paths).unwrap();
+        assert!(heard.warnings(&survey).is_empty());
+        (survey[3].is_constant, survey[7].clipped) = (true, 0.02);
+        let warnings = heard.warnings(&survey);
+        assert!(
+            warnings[0].starts_with("channel left:4 is silent") && warnings[1].contains("right:3 is clipped in 2.0 %")
+        );
         let json = serde_json::to_value(&heard).unwrap();
         assert_eq!(json["arrivals"].as_array().unwrap().len(), 8);
         let arrival = &json["arrivals"][7][9];

@@ -50,6 +50,32 @@ pub struct ChannelSurvey {
     pub is_truncated: bool,
 }
 
+/// Share of clipped samples beyond which a channel is said to be clipped.
+const CLIPPED: f64 = 1e-3;
+
+impl ChannelSurvey {
+    /// What is wrong with the channel, in words that follow its name.
+    pub fn problems(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        if self.is_constant {
+            all.push("is silent: nothing was connected, or it was muted".to_string());
+        }
+        if let Some(other) = &self.same_as {
+            all.push(format!("is the same as channel {} of {}; leave one of them out", other.channel, other.file));
+        }
+        if self.clipped > CLIPPED {
+            all.push(format!("is clipped in {:.1} % of its samples; record with less gain", 100.0 * self.clipped));
+        }
+        if self.non_finite > 0 {
+            all.push(format!("has {} samples that are no numbers; they count as 0", self.non_finite));
+        }
+        if self.is_truncated {
+            all.push("ends before its file says that it does: the file was cut off".to_string());
+        }
+        all
+    }
+}
+
 /// Reads recordings to the end, block by block, and says what is in each channel: of the first file, of the second,
 /// and so on. Sample rates and lengths may differ.
 ///

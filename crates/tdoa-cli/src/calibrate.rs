@@ -2,12 +2,14 @@
 
 mod arguments;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use cli::files::Files;
 use cli::input::name;
 use serde::Serialize;
+use sound::Arrival;
 use tdoa::calibrate::{Calibrated, CalibratedError, Calibrates, Dimension, calibrate_either};
 use tdoa::html::{Provenance, html_with};
 use tdoa::node_table::node_table;
@@ -26,6 +28,7 @@ use crate::frame::Frame;
 use crate::known::{self, Truth};
 use crate::partial;
 use crate::provenance;
+use crate::recordings::{Expected, Recordings, sections};
 use crate::summary::{self, Context};
 use crate::units::Unit;
 use crate::{Failure, input, interrupt, output};
@@ -51,14 +54,23 @@ impl<const D: usize> Report<'_, D> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let files = Files::new().reads(Some(&arguments.file)).reads(arguments.anchors.as_deref());
+    let further = arguments.recording.further_files();
+    let files = arguments.files.iter().chain(&further).fold(Files::new(), |files, file| files.reads(Some(file)));
+    let files = files.reads(arguments.anchors.as_deref());
     let files = files.reads(arguments.distances.as_deref()).reads(arguments.truth.as_deref());
     let files = files.reads(arguments.clocks.recorders.as_deref()).reads(arguments.clocks.times.as_deref());
     arguments.outputs().into_iter().fold(files, |files, (option, path)| files.writes(option, path)).check()?;
     let date = arguments.html.as_ref().map(|_| provenance::Date::read()).transpose()?;
-    let options = arguments.input.options(arguments.estimate_speed)?;
-    let (units, said) = (options.units.unwrap_or_default(), options.units.is_some());
-    let mut measured = input::measurements(&arguments.file, options)?;
+    let recordings = arguments.recordings()?;
+    let (mut measured, units) = match &recordings {
+        Some(recordings) => (recordings.measured()?, Some(Units::Seconds { speed: recordings.speed() })),
+        None => {
+            let options = arguments.input.options(arguments.estimate_speed)?;
+            let units = options.units;
+            (input::measurements(arguments.file(), options)?, units)
+        }
+    };
+    let (units, said) = (units.unwrap_or_default(), units.is_some());
     if arguments.are_started_apart() {
         measured = arguments.clocks.apart(measured)?;
     }
@@ -79,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Dimensions::Auto, ..) => None,
     };
     let chosen = given.map(|(_, by)| by);
-    let task = Task { arguments, measured: &measured, true_nodes, frame, units, said, date, chosen };
+    let task = Task { arguments, measured: &measured, recordings, true_nodes, frame, units, said, date, chosen };
     match given.map(|(dimensions, _)| dimensions) {
         Some(3) => task.given::<3>(anchors),
         Some(_) => task.given::<2>(anchors),
@@ -91,6 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 struct Task<'a> {
     arguments: &'a Arguments,
     measured: &'a Pseudoranges,
+    /// Where the measurements come from, if these are recordings.
+    recordings: Option<Recordings>,
     /// What the file of --truth has.
     true_nodes: Option<Nodes>,
     frame: Option<Frame>,
@@ -155,7 +169,7 @@ impl Task<'_> {
 
     fn truth<const D: usize>(&self) -> Result<Truth<D>, Failure> {
         let given = self.arguments.truth.as_deref().zip(self.true_nodes.as_ref());
-        let truth = Truth::read(given, &self.arguments.file, self.measured)?;
+        let truth = Truth::read(given, self.arguments.file(), self.measured)?;
         if self.arguments.scale && truth.receivers.is_none() {
             return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
         }
@@ -173,7 +187,8 @@ impl Task<'_> {
             Delays::None | Delays::All => ReceiverDelays::None,
             Delays::Auto => ReceiverDelays::Auto,
         };
-        options.clocks = arguments.clocks.clocks(arguments.sending, arguments.are_started_apart());
+        let are_recorders = self.recordings.as_ref().is_some_and(Recordings::are_apart);
+        options.clocks = arguments.clocks.clocks(arguments.sending, arguments.are_started_apart(), are_recorders);
         options.errors = match arguments.errors {
             Side::Auto => Errors::Auto,
             Side::Symmetric => Errors::Symmetric,
@@ -204,7 +219,7 @@ impl Task<'_> {
     {
         match error {
             CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Clocks { .. } => {
-                Failure::Undetermined(format!("{}: {error}", name(&self.arguments.file)))
+                Failure::Undetermined(format!("{}: {error}", name(self.arguments.file())))
             }
             CalibrateError::Cancelled(Some(best)) => {
                 partial::write(&best, self.measured, self.arguments.json.as_deref())
@@ -218,7 +233,7 @@ impl Task<'_> {
     fn provenance(&self, time: Duration) -> Provenance {
         let mut provenance = Provenance::default();
         provenance.program = Some(concat!("tdoa ", env!("CARGO_PKG_VERSION")).to_string());
-        provenance.file = Some(name(&self.arguments.file));
+        provenance.file = Some(name(self.arguments.file()));
         provenance.command = Some(provenance::command());
         provenance.settings = self.arguments.settings();
         provenance.dimensions = self.chosen.map(str::to_string);
@@ -264,7 +279,11 @@ impl Task<'_> {
             output::text(path, &picture(&calibration))?;
         }
         if let Some(path) = &arguments.html {
-            output::text(path, &html_with(&calibration, &self.provenance(started.elapsed())))?;
+            let mut provenance = self.provenance(started.elapsed());
+            if let (Some(recordings), Some(seconds)) = (&self.recordings, unit) {
+                provenance.sections = sections(recordings, &expected(recordings, &calibration, seconds))?;
+            }
+            output::text(path, &html_with(&calibration, &provenance))?;
         }
         if let Some(path) = &arguments.nodes {
             output::text(path, &node_table(&calibration))?;
@@ -279,10 +298,32 @@ impl Task<'_> {
             None => Ok(()),
             Some(why) => Err(Failure::Undetermined(format!(
                 "{}: {why} (see the warnings); the network is not to be trusted",
-                name(&arguments.file)
+                name(arguments.file())
             ))),
         }
     }
+}
+
+/// When the network has each event arrive at each channel of recordings.
+fn expected<const D: usize>(
+    recordings: &Recordings,
+    calibration: &Calibration<D>,
+    seconds: Unit,
+) -> Vec<Vec<Option<Expected>>> {
+    let places = |names: &[String]| -> HashMap<String, usize> {
+        names.iter().enumerate().map(|(place, name)| (name.clone(), place)).collect()
+    };
+    let (receivers, transmitters) = (places(&calibration.receiver_names), places(&calibration.transmitter_names));
+    let arrival = |event: usize, name: &String, arrival: &Option<Arrival>| {
+        let (i, j) = (*receivers.get(name)?, *transmitters.get(&(event + 1).to_string())?);
+        let residual = calibration.residuals.get(i, j)?;
+        Some(Expected { seconds: arrival.as_ref()?.seconds - seconds.of(residual.length), is_used: residual.inlier })
+    };
+    let names = recordings.heard.names();
+    let of_event = |(event, arrivals): (usize, &Vec<Option<Arrival>>)| {
+        names.iter().zip(arrivals).map(|(name, found)| arrival(event, name, found)).collect()
+    };
+    recordings.heard.arrivals.iter().enumerate().map(of_event).collect()
 }
 
 /// Writes notes to the error output.

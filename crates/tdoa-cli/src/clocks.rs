@@ -50,9 +50,10 @@ impl EmissionArguments {
 pub(crate) struct ReceiverClockArguments {
     /// What the clocks of receivers do: all share one (common), each recorder was started by itself (offset), or its clock
     /// runs fast or slow too (rate), where values are readings of that clock. Receivers are a recorder each, but for those
-    /// of --recorders and for names such as `rec1:1` and `rec1:2`, which are channels of one.
-    #[arg(long, value_enum, default_value = "common")]
-    receiver_clocks: Clock,
+    /// of --recorders and for names such as `rec1:1` and `rec1:2`, which are channels of one. Common if not given, but rate for
+    /// recordings of several recorders.
+    #[arg(long, value_enum)]
+    receiver_clocks: Option<Clock>,
     /// The recorder of each receiver: a line `receiver,recorder` each.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) recorders: Option<PathBuf>,
@@ -78,15 +79,17 @@ enum Clock {
 }
 
 impl ReceiverClockArguments {
-    /// What is unknown of clocks, where `--receiver-delays all` says that receivers are started `apart`, or not.
-    pub(crate) fn clocks(&self, sending: EmissionArguments, apart: bool) -> Clocks {
+    /// What is unknown of clocks, where `--receiver-delays all` says that receivers are started `apart`, or not, and where
+    /// measurements come from recordings of several recorders.
+    pub(crate) fn clocks(&self, sending: EmissionArguments, apart: bool, are_recorders: bool) -> Clocks {
         let mut clocks = Clocks::default();
         clocks.emissions = sending.emissions();
         clocks.receivers = match self.receiver_clocks {
             _ if apart => ReceiverClocks::Offset,
-            Clock::Common => ReceiverClocks::Common,
-            Clock::Offset => ReceiverClocks::Offset,
-            Clock::Rate => ReceiverClocks::Rate,
+            None if are_recorders => ReceiverClocks::Rate,
+            None | Some(Clock::Common) => ReceiverClocks::Common,
+            Some(Clock::Offset) => ReceiverClocks::Offset,
+            Some(Clock::Rate) => ReceiverClocks::Rate,
         };
         (clocks.offset_sigma, clocks.rate_sigma) = (self.clock_sigma, self.rate_sigma.map(|ppm| 1e-6 * ppm));
         clocks
@@ -115,7 +118,7 @@ impl ReceiverClockArguments {
 
     /// Measurements with a recorder for each receiver, as `--receiver-delays all` says.
     pub(crate) fn apart(&self, measured: Pseudoranges) -> Result<Pseudoranges, Failure> {
-        if self.recorders.is_some() || !matches!(self.receiver_clocks, Clock::Common) {
+        if self.recorders.is_some() || !matches!(self.receiver_clocks, None | Some(Clock::Common)) {
             let problem = "--receiver-delays all is short for --receiver-clocks offset with a recorder for each receiver: give one of both";
             return Err(Failure::Unusable(problem.to_string()));
         }
@@ -127,7 +130,7 @@ impl ReceiverClockArguments {
     pub(crate) fn settings(&self) -> [Option<(String, String)>; 5] {
         let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         [
-            named("receiver-clocks", Some(said(self.receiver_clocks))),
+            named("receiver-clocks", self.receiver_clocks.map(said)),
             named("recorders", path(&self.recorders)),
             named("times", path(&self.times)),
             named("clock-sigma", self.clock_sigma),

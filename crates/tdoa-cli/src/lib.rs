@@ -5,9 +5,11 @@ mod clocks;
 mod frame;
 mod input;
 mod known;
+mod listen;
 mod locate;
 mod partial;
 mod provenance;
+mod recordings;
 mod simulate;
 mod solve;
 mod summary;
@@ -35,9 +37,10 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    Calibrate(calibrate::Arguments),
+    Calibrate(Box<calibrate::Arguments>),
     #[cfg(feature = "experiments")]
     Experiment(experiments::command::Arguments),
+    Listen(listen::Arguments),
     Locate(locate::Arguments),
     Simulate(simulate::Arguments),
     Solve(solve::Arguments),
@@ -58,7 +61,11 @@ impl Program for Arguments {
         match &self.command {
             #[cfg(feature = "experiments")]
             Command::Experiment(arguments) => arguments.sharing(),
-            Command::Calibrate(_) | Command::Locate(_) | Command::Simulate(_) | Command::Solve(_) => None,
+            Command::Calibrate(_)
+            | Command::Listen(_)
+            | Command::Locate(_)
+            | Command::Simulate(_)
+            | Command::Solve(_) => None,
         }
     }
 
@@ -68,6 +75,7 @@ impl Program for Arguments {
             Command::Calibrate(arguments) => calibrate::run(arguments),
             #[cfg(feature = "experiments")]
             Command::Experiment(arguments) => experiments::command::run(arguments, ranks),
+            Command::Listen(arguments) => listen::run(arguments),
             Command::Locate(arguments) => locate::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Solve(arguments) => solve::run(arguments),

@@ -40,6 +40,11 @@ enum Choice {
 const ASSUMED: f64 = 343.0;
 
 impl UnitArguments {
+    /// The propagation speed, if it was given, metres per second.
+    pub(crate) fn speed(&self) -> Option<f64> {
+        self.speed
+    }
+
     /// The unit, if one is given; where the speed is estimated anyway, any speed will do.
     pub(crate) fn units(&self, estimate_speed: bool) -> Result<Option<Units>, Failure> {
         let unusable = |message: String| Err(Failure::Unusable(message));
@@ -155,6 +160,20 @@ fn column(text: &str) -> Result<(Role, String), String> {
 }
 
 impl InputArguments {
+    /// The speed of sound for recordings, metres per second, if it was given.
+    ///
+    /// # Errors
+    /// For an option that says how tables are read.
+    pub(crate) fn speed_of_recordings(&self) -> Result<Option<f64>, Failure> {
+        let of_tables = self.settings().into_iter().find(|(name, _)| name != "speed");
+        match of_tables {
+            Some((name, _)) => {
+                Err(Failure::Unusable(format!("--{name} is for tables; recordings are read by themselves")))
+            }
+            None => Ok(self.units.speed),
+        }
+    }
+
     /// How the file is read; where the speed is estimated anyway, any speed will do.
     pub(crate) fn options(&self, estimate_speed: bool) -> Result<ReadOptions, Failure> {
         let mut options = ReadOptions::default();

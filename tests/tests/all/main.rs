@@ -28,6 +28,7 @@ mod tdoa_input;
 #[cfg(unix)]
 mod tdoa_interrupt;
 mod tdoa_known;
+mod tdoa_listen;
 mod tdoa_locate;
 mod tdoa_mat;
 mod tdoa_mirror;

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use tdoa::CalibrateOptions;
 
+use crate::Failure;
 use crate::clocks::{EmissionArguments, ReceiverClockArguments};
 use crate::provenance::{named, said};
+use crate::recordings::{RecordingArguments, Recordings, SpeedArguments, is_recording};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
@@ -19,13 +21,21 @@ use crate::provenance::{named, said};
 /// numbers may have decimal commas. `-` stands for standard input, and for standard output (in
 /// place of the summary) where a result is written.
 ///
+/// Several FILEs, or one, may be recordings (WAV or FLAC) of claps or other short sounds in place of a table: the program finds the
+/// sounds and when each channel hears them, as `tdoa listen` does, and calibrates with these times.
+///
 /// Interrupted, it writes the best network so far as JSON marked "unfinished", with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The measurements; - for standard input.
-    pub(super) file: PathBuf,
+    /// The measurements, - for standard input; or recordings, which are listened to.
+    #[arg(required = true, value_name = "FILE")]
+    pub(super) files: Vec<PathBuf>,
     #[command(flatten)]
     pub(super) input: crate::units::InputArguments,
+    #[command(flatten, next_help_heading = "Recordings")]
+    pub(super) recording: RecordingArguments,
+    #[command(flatten, next_help_heading = "Recordings")]
+    pub(super) air: SpeedArguments,
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) sigma: Option<f64>,
@@ -141,6 +151,44 @@ impl Arguments {
         matches!(self.receiver_delays, Delays::All)
     }
 
+    /// The file of the measurements, or the first recording.
+    pub(super) fn file(&self) -> &Path {
+        self.files.first().map_or(Path::new("-"), PathBuf::as_path)
+    }
+
+    /// What was heard in the recordings, if these were given in place of a table.
+    pub(super) fn recordings(&self) -> Result<Option<Recordings>, Failure> {
+        let count = self.files.iter().filter(|file| is_recording(file)).count();
+        if count == 0 {
+            if let [_, second, ..] = &self.files[..] {
+                let problem = "a table is calibrated by itself; several files are for recordings (WAV or FLAC)";
+                return Err(Failure::Unusable(format!("{}: {problem}", second.display())));
+            }
+            if self.recording.are_given() || self.air.is_given() {
+                let problem = "is no recording (WAV or FLAC), and the options for these have no meaning for a table";
+                return Err(Failure::in_file(self.file(), problem));
+            }
+            return Ok(None);
+        }
+        if let Some(other) = self.files.iter().find(|file| !is_recording(file)) {
+            return Err(Failure::in_file(other, "is no recording (WAV or FLAC), as the other files are"));
+        }
+        let speed = self.air.speed(self.input.speed_of_recordings()?)?;
+        if !speed.is_said && !self.estimate_speed {
+            eprintln!(
+                "note: the speed of sound is taken to be {} m/s, that of 20 degrees; --temperature or --speed says it better",
+                speed.metres_per_second
+            );
+        }
+        let options = self.recording.options(speed.metres_per_second, self.html.is_some())?;
+        let recorders = self.recording.recorders(&self.files);
+        let found =
+            crate::on_threads(self.threads, || Recordings::listen(recorders, &options, speed.metres_per_second))??;
+        eprintln!("note: {}", found.counts());
+        found.warnings().iter().for_each(|warning| eprintln!("note: {warning}"));
+        Ok(Some(found))
+    }
+
     /// The options that ask for files, with these.
     pub(super) fn outputs(&self) -> [(&'static str, Option<&Path>); 4] {
         [
@@ -171,6 +219,11 @@ impl Arguments {
             named("agreeing", Some(self.agreeing)),
         ];
         let own = own.into_iter().chain(self.sending.settings()).chain(self.clocks.settings()).flatten();
-        self.input.settings().into_iter().chain(own).collect()
+        let of_recordings = self
+            .files
+            .iter()
+            .any(|file| is_recording(file))
+            .then(|| self.recording.settings().into_iter().chain(named("temperature", self.air.temperature())));
+        self.input.settings().into_iter().chain(of_recordings.into_iter().flatten()).chain(own).collect()
     }
 }
