@@ -19,6 +19,7 @@ mod noise;
 mod recording;
 mod reduced;
 mod routes;
+mod sound;
 mod speed;
 mod statistics;
 mod table;
@@ -63,6 +64,7 @@ enum Kind {
     Reduced(reduced::Arguments),
     Dimension(dimension::Arguments),
     Clocks(clocks::Arguments),
+    Sound(sound::Arguments),
     Kinds(kinds::Arguments),
     Families(families::Arguments),
 }
@@ -70,7 +72,7 @@ enum Kind {
 impl Arguments {
     /// Which experiments several ranks can do.
     pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `clocks`, `conditions`, `coverage`, `damaged`, `dimension`, `families`, \
-                              `kinds`, `noise`, `reduced`, `routes` and `table2` run on several ranks";
+                              `kinds`, `noise`, `reduced`, `routes`, `sound` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
     pub fn sharing(&self) -> Option<&Sharing> {
@@ -90,6 +92,7 @@ impl Arguments {
             | Kind::Reduced(_)
             | Kind::Dimension(_)
             | Kind::Clocks(_)
+            | Kind::Sound(_)
             | Kind::Kinds(_)
             | Kind::Families(_) => Some(&self.ranks),
         }
@@ -120,6 +123,7 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Reduced(arguments) => reduced::run(arguments, ranks),
         Kind::Dimension(arguments) => dimension::run(arguments, ranks),
         Kind::Clocks(arguments) => clocks::run(arguments, ranks),
+        Kind::Sound(arguments) => sound::run(arguments, ranks),
         Kind::Kinds(arguments) => kinds::run(arguments, ranks),
         Kind::Families(arguments) => families::run(arguments, ranks),
     }

@@ -10,3 +10,4 @@ pub mod hard;
 pub mod kinds;
 pub mod noise;
 pub mod reduced;
+pub mod sound;

@@ -12,6 +12,7 @@ mod decompose;
 mod errors;
 mod family;
 mod json;
+mod listen;
 mod measured;
 mod networks;
 mod solve;
@@ -31,6 +32,8 @@ mod _native {
     use crate::decompose::decompose;
     #[pymodule_export]
     use crate::family::{Family, Fibre};
+    #[pymodule_export]
+    use crate::listen::{listen, write_recording};
     #[pymodule_export]
     use crate::measured::{check_size, heads_list, read};
     #[pymodule_export]

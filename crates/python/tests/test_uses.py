@@ -592,3 +592,58 @@ def test_new_transmitters_are_located():
     assert [repr(place) for place in again] == [repr(place) for place in places]
     with pytest.raises(hc.InputError, match="not in the network: other"):
         network.locate(new, names=["other", *names[1:]])
+
+
+def test_recordings_are_heard_and_calibrated(tmp_path):
+    # Claps in a field: white noise that begins at once, the same for all microphones but for the delay and the distance.
+    random = np.random.default_rng(3)
+    rate, speed = 48_000, 343.0
+    microphones = random.uniform([0, 0, 0], [8, 6, 3], (8, 3))
+    places = random.uniform([0, 0, 0], [8, 6, 3], (16, 3))
+    samples = 1e-4 * random.normal(size=(8, 48_000 * 26))
+    times = 1.0 + 1.5 * np.arange(16) + random.uniform(0, 0.3, 16)
+    frequencies = np.fft.rfftfreq(8192, 1 / rate)
+    inside = (frequencies > 200) & (frequencies < 15_000)
+    for place, time in zip(places, times):
+        clap = np.zeros(8192)
+        clap[:384] = random.normal(size=384) * np.exp(-np.arange(384) / 72)
+        spectrum = np.fft.rfft(clap) * inside
+        for channel, microphone in zip(samples, microphones):
+            distance = np.linalg.norm(place - microphone)
+            at = (time + distance / speed) * rate
+            first = int(at) - 64
+            # A delay of a fraction of a sample turns the phases.
+            late = np.fft.irfft(spectrum * np.exp(-2j * np.pi * frequencies * (at - first) / rate))
+            channel[first : first + 8192] += 0.1 / distance * late
+    heard = tdoa.listen(samples, rate=rate, speed=speed)
+    assert heard.pseudoranges.shape == (8, 16) and heard.recorders is None
+    # Claps of a bounded band ring before they begin, which some channels hear by themselves: that is said, and no channel is wrong.
+    assert not any(warning.startswith("channel ") for warning in heard.warnings)
+    found = tdoa.calibrate(heard).compared(microphones)
+    assert found.dimensions == 3 and found.truth["receiver_rms"] < 3e-3, found.truth
+    # Two recorders that were started apart, from files.
+    _native = hc._native
+    parts = [tmp_path / "left.wav", tmp_path / "right.wav"]
+    for path, part in zip(parts, [samples[:4], samples[4:, 12_000:]]):
+        _native.write_recording(str(path), part.astype(np.float32), rate)
+    apart = tdoa.listen(parts, apart=True, speed=speed)
+    assert apart.recorders == ["left"] * 4 + ["right"] * 4
+    assert abs(apart.data["alignment"]["recorders"][1]["start"] - 0.25) < 0.02
+    found = tdoa.calibrate(apart).compared(microphones)
+    assert found.truth["receiver_rms"] < 2e-2 and [clock.recorder for clock in found.clocks] == ["left", "right"], found
+    pandas = pytest.importorskip("pandas")
+    table = heard.to_dataframe()
+    assert isinstance(table, pandas.DataFrame) and len(table) == 128 and table.sigma.max() < 1e-4
+    # What is no recording, or says too little.
+    for given, words in [(samples, "rate"), (5, "recordings must be paths")]:
+        with pytest.raises(hc.InputError, match=words):
+            tdoa.listen(given)
+    (tmp_path / "text.wav").write_text("no sound")
+    with pytest.raises(hc.InputError, match="text.wav"):
+        tdoa.listen(tmp_path / "text.wav")
+    with pytest.raises(FileNotFoundError):
+        tdoa.listen(tmp_path / "none.wav")
+    silent = tdoa.listen(np.zeros((4, 48_000)), rate=rate)
+    assert silent.pseudoranges is None and "silent" in silent.warnings[0]
+    with pytest.raises(hc.InputError, match="no sound"):
+        tdoa.calibrate(silent)

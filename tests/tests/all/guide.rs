@@ -34,6 +34,7 @@ const NOT_RUN: &[&str] = &[
     "cargo bench -p hc --bench lu",
     "cargo bench -p hc --bench mixed_volume",
     "cargo bench -p tdoa --bench calibrate",
+    "cargo bench -p sound --bench listen",
     "cargo xtask compare",
     // In examples/network/README.md, of files that the reader has.
     "tdoa calibrate pseudoranges.csv --anchors anchors.csv",
@@ -274,6 +275,27 @@ fn the_tracker_and_the_checks() {
         assert_eq!((cells[1], cells[2], cells[3], cells[6]), ("20", (20 * paths).to_string().as_str(), "0", "20"));
     }
     run_page("docs/guide/checks.md", folder.path());
+}
+
+/// Recordings that the program makes are calibrated to millimetres, as the page says.
+#[test]
+fn from_recordings_to_a_network() {
+    let folder = tempfile::tempdir().expect("folder");
+    let printed = run_page("docs/guide/recordings.md", folder.path());
+    assert_eq!(printed.len(), 8);
+    let rms = |text: &str| -> f64 {
+        let line = text.lines().find(|line| line.starts_with("against the truth")).expect("a comparison");
+        let (length, unit) =
+            line.split_once("receivers, ").and_then(|(_, rest)| rest.split_once(' ')).expect("a length");
+        let metres = if unit.starts_with("mm") { 1e-3 } else { 1.0 };
+        metres * length.parse::<f64>().expect("a number")
+    };
+    // One recorder, four recorders, chirps in noise.
+    for (command, most) in [(1, 3e-3), (5, 5e-3), (7, 3e-3)] {
+        let text = &printed[command].1;
+        assert!(rms(text) < most && text.contains("; unique"), "{text}");
+    }
+    assert!(folder.path().join("room.html").exists());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod clocks;
 mod families;
 mod solvers;
+mod sound;
 mod space;
 
 use super::plan::PLAN;
@@ -52,6 +53,7 @@ const SECTIONS: &[Section] = &[
     ("dimension", "Plane or space", space::dimension),
     ("kinds", "Networks as rooms, arrays and equipment have them", space::kinds),
     ("clocks", "Clocks", clocks::clocks),
+    ("sound", "Recordings that are simulated", sound::sound),
     ("families", "Families with known numbers of solutions", families::families),
 ];
 

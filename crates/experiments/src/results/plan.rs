@@ -164,5 +164,6 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("low", "dimension --height 0.5,1", 20, 1),
     plain("kinds", "kinds", 100, 1),
     plain("clocks", "clocks", 200, 1),
+    Experiment { name: "sound", command: "sound", full: Some(20), quick: (1, "--case 2"), recordings: &[] },
     plain("families", "families", 50, 1),
 ];

@@ -24,11 +24,13 @@ __all__ = [
     "cramer_rao",
     "decompose",
     "heads_list",
+    "listen",
     "mixed_volume",
     "read",
     "simulate",
     "solve",
     "solve_network",
+    "write_recording",
 ]
 
 class _How(TypedDict):
@@ -60,6 +62,8 @@ def simulate(wanted: _Found) -> _Found: ...
 def cramer_rao(
     receivers: NDArray[np.float64], transmitters: NDArray[np.float64], used: NDArray[np.bool_], sigma: float
 ) -> float: ...
+def listen(recorders: list[list[str]], settings: _Found, how: _How) -> str: ...
+def write_recording(path: str, samples: NDArray[np.float32], rate: int) -> None: ...
 def check_size(receivers: int, transmitters: int) -> None: ...
 def heads_list(headings: list[str]) -> bool: ...
 def read(

@@ -14,6 +14,7 @@ __all__ = [
     "Calibration",
     "Clocks",
     "Error",
+    "Heard",
     "InputError",
     "InternalError",
     "Networks",
@@ -25,6 +26,7 @@ __all__ = [
     "Unfinished",
     "calibrate",
     "cramer_rao",
+    "listen",
     "read",
     "simulate",
     "solve",
@@ -74,6 +76,33 @@ class Pseudoranges:
     def __eq__(self, other: object) -> bool: ...
     __hash__: None  # type: ignore[assignment]
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
+
+class Heard:
+    pseudoranges: Pseudoranges | None
+    recorders: list[str] | None
+    warnings: list[str]
+    speed: float
+    data: dict[str, Any]
+    def __init__(self, text: str, speed: float) -> None: ...
+    # A DataFrame of pandas, which need not be installed.
+    def to_dataframe(self) -> Any: ...
+
+def listen(
+    recordings: _Path | bytes | Iterable[_Path | bytes | Iterable[_Path]] | ArrayLike,
+    *,
+    rate: int | None = None,
+    apart: bool = False,
+    speed: float | None = None,
+    temperature: float | None = None,
+    template: _Path | None = None,
+    chirp: Sequence[float] | None = None,
+    band: Sequence[float] | None = None,
+    extent: float = 30.0,
+    threshold: float | None = None,
+    least_channels: int = 4,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> Heard: ...
 
 class Unfinished:
     receivers: _Floats
@@ -228,7 +257,7 @@ class Simulation(NamedTuple):
     clocks: _Floats
 
 def calibrate(
-    pseudoranges: _Table,
+    pseudoranges: _Table | Heard,
     *,
     sigma: ArrayLike | None = None,
     speed: float | None = None,

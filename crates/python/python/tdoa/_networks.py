@@ -11,6 +11,7 @@ from hc._run import call, integer, number, seeded, text
 
 from ._calibration import Calibration
 from ._clocks import Clocks, settings as clock_settings
+from ._listen import heard
 from ._tables import real_matrix, table
 
 
@@ -151,8 +152,9 @@ def calibrate(
 
     Parameters
     ----------
-    pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges
-        What receiver i (row) measures of transmitter j (column): distance plus offset, metres; NaN where nothing was measured.
+    pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges, or Heard
+        What receiver i (row) measures of transmitter j (column): distance plus offset, metres; NaN where nothing was measured. What
+        `listen` has heard brings its recorders along, whose clocks then have unknown offsets and rates.
         With `speed`: arrival times in seconds. A DataFrame may also have one measurement a row, in columns such as mic, event
         and value, as `read` takes it from a file.
     sigma : float or array_like of shape (m, n), optional
@@ -244,6 +246,7 @@ def calibrate(
     >>> [clock.recorder for clock in found.clocks], bool(abs(found.clocks[1].offset - apart) < 0.1)
     (['rec1', 'rec2', 'rec3', 'rec4', 'rec5'], True)
     """
+    pseudoranges, recorders, clocks = heard(pseudoranges, recorders, clocks)
     given, single, factor = table(pseudoranges, names, sigma, speed)
     receivers, count = given["receivers"], len(given["values"])
     nodes = _nodes(given)

@@ -252,6 +252,11 @@ def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=Fa
     return _pseudoranges(_native.read(path, data, units, number("speed", speed), number("rate", rate), variable, *more))
 
 
+def arrivals(text, speed):
+    """The pseudoranges of a list of arrival times in seconds."""
+    return _pseudoranges(_native.read("what was heard", text.encode(), "s", speed, None, None, False, [], None, False))
+
+
 def _headings(columns):
     """Pairs of a role and a heading."""
     if columns is None:

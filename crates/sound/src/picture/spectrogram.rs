@@ -16,8 +16,9 @@ const LENGTH: usize = 512;
 const COLUMNS: usize = 900;
 const ROWS: usize = 64;
 
-/// Levels below the loudest that are black, dB.
+/// Levels are dark that are so much below the loudest, or below the middle one, which is mostly noise, dB.
 const RANGE: f64 = 70.0;
+const NOISE: f64 = -5.0;
 
 /// Colours from quiet to loud, between which others lie: dark blue, violet, orange, light yellow.
 const COLOURS: [[f64; 3]; 4] = [[10.0, 12.0, 50.0], [120.0, 30.0, 120.0], [240.0, 130.0, 50.0], [255.0, 250.0, 190.0]];
@@ -111,7 +112,13 @@ fn levels(recording: &mut Recording) -> Result<(Vec<[f64; ROWS]>, u64), ReadErro
 /// An image of levels, with time to the right and high frequencies above.
 fn image(columns: &[[f64; ROWS]]) -> String {
     let loudest = columns.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-    let number = |level: f64| (255.0 * ((level - loudest + RANGE) / RANGE).clamp(0.0, 1.0)) as u8;
+    let mut all: Vec<f64> = columns.iter().flatten().copied().collect();
+    all.sort_by(f64::total_cmp);
+    let middle = all.get(all.len() / 2).copied().unwrap_or(f64::NEG_INFINITY);
+    // A tone has nothing but its own level.
+    let dark = (loudest - RANGE).max(middle + NOISE).min(loudest - 1.0);
+    // What is no number becomes zero.
+    let number = |level: f64| (255.0 * ((level - dark) / (loudest - dark)).clamp(0.0, 1.0)) as u8;
     let rows: Vec<Vec<u8>> = (0..ROWS).map(|row| columns.iter().map(|column| number(column[row])).collect()).collect();
     address(&rows, &palette())
 }

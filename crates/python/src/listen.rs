@@ -1,0 +1,103 @@
+//! `tdoa.listen`.
+
+use crate::arrays::elements;
+use crate::errors::{Failure, guarded};
+use crate::json;
+use crate::work::{Done, WorkOptions, run, whole};
+use numpy::PyReadonlyArrayDyn;
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use serde::Serialize;
+use sound::{ChannelSurvey, Heard, ListenOptions, SampleFormat, Signal, listen as hear, survey, write_wav};
+
+/// ListenSettings as Python gives them.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ListenSettings {
+    /// Metres per second.
+    speed: f64,
+    /// Metres.
+    extent: f64,
+    /// Hz.
+    band: Option<[f64; 2]>,
+    /// dB.
+    threshold: Option<f64>,
+    least_channels: usize,
+    /// From, to, Hz; seconds.
+    chirp: Option<[f64; 3]>,
+    /// A file.
+    template: Option<String>,
+}
+
+impl ListenSettings {
+    fn options(self) -> Result<ListenOptions, Failure> {
+        let signal = match (self.template, self.chirp) {
+            (Some(path), _) => Signal::read(path).map_err(Failure::input)?,
+            (None, Some([from, to, seconds])) => Signal::Chirp { from, to, seconds },
+            (None, None) => Signal::Unknown,
+        };
+        let mut options = ListenOptions::of(signal);
+        if let Some(band) = self.band {
+            (options.events.band, options.times.band) = (band, band);
+        }
+        (options.events.extent, options.events.speed) = (self.extent, self.speed);
+        options.events.least_channels = self.least_channels;
+        if let Some(decibels) = self.threshold {
+            options.events.threshold = 10f64.powf(decibels / 20.0);
+        }
+        Ok(options)
+    }
+}
+
+/// What was heard, in the form of the program's JSON, and the list of arrivals.
+#[derive(Serialize)]
+struct Report {
+    survey: Vec<ChannelSurvey>,
+    names: Vec<String>,
+    recorder_names: Vec<String>,
+    warnings: Vec<String>,
+    counts: String,
+    list: String,
+    #[serde(flatten)]
+    heard: Heard,
+}
+
+/// Listens to the files of each recorder; the JSON of what was heard.
+#[pyfunction]
+pub(crate) fn listen<'py>(
+    py: Python<'py>,
+    recorders: Vec<Vec<String>>,
+    settings: ListenSettings,
+    how: WorkOptions,
+) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| {
+        let options = settings.options()?;
+        let Done { result, stopped, .. } = run(py, &how, move |_| {
+            let survey = survey(recorders.iter().flatten()).map_err(Failure::input)?;
+            let heard = hear(&recorders, &options).map_err(Failure::input)?;
+            json::text(&Report {
+                names: heard.names(),
+                recorder_names: heard.recorder_names(),
+                warnings: heard.warnings(&survey),
+                counts: heard.counts(),
+                list: heard.list(),
+                survey,
+                heard,
+            })
+        })?;
+        whole(py, result?.into_bound_py_any(py)?, stopped)
+    })
+}
+
+/// Writes samples, a row a channel, as a recording of floats.
+#[pyfunction]
+pub(crate) fn write_recording(path: &str, samples: PyReadonlyArrayDyn<'_, f32>, rate: u32) -> PyResult<()> {
+    guarded(|| {
+        let (values, shape) = elements(&samples, 2)?;
+        let channels: Vec<&[f32]> = match shape[1] {
+            0 => vec![&[]; shape[0]],
+            length => values.chunks_exact(length).collect(),
+        };
+        write_wav(path, rate, &channels, SampleFormat::Float32).map_err(Failure::input)
+    })
+}
