@@ -68,7 +68,9 @@ pub use listen::{Heard, ListenError, ListenOptions, listen};
 pub use picture::{Trace, spectrogram, waveforms};
 pub use recorders::{Alignment, AlignmentOptions, RecorderAlignment, Unaligned, UnalignedReason};
 pub use recording::Recording;
-pub use room::{Decay, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room};
+pub use room::{
+    Decay, Obstacle, Placement, Recorder, RoomError, RoomOptions, RoomRecording, RoomTruth, Sound, simulate_room,
+};
 pub use signal::{Signal, SignalError, TemplateError};
 pub use survey::{ChannelName, ChannelSurvey, survey};
 pub use times::{Arrival, TimeError, TimeOptions, Window, arrival_times};

@@ -12,5 +12,5 @@ mod walls;
 mod waveform;
 
 pub use error::RoomError;
-pub use options::{Decay, Placement, Recorder, RoomOptions, Sound};
+pub use options::{Decay, Obstacle, Placement, Recorder, RoomOptions, Sound};
 pub use simulation::{RoomRecording, RoomTruth, simulate_room};

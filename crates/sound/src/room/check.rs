@@ -110,5 +110,11 @@ fn ranges(options: &RoomOptions) -> Result<(), RoomError> {
         within("the start of a recorder", "-1e6 to 1e6 s", recorder.start, -1e6, 1e6)?;
         within("the rate of a recorder", "-1e4 to 1e4 ppm", recorder.rate, -1e4, 1e4)?;
     }
+    for obstacle in &options.obstacles {
+        let last = options.microphones.count().saturating_sub(1) as f64;
+        let range = "less than the number of microphones";
+        within("the microphone of an obstacle, counted from 0", range, obstacle.microphone as f64, 0.0, last)?;
+        within("the attenuation of an obstacle", "0 to 200 dB", obstacle.attenuation_db, 0.0, 200.0)?;
+    }
     above_zero("the peak", "positive and at most 1", options.peak, 1.0)
 }

@@ -61,6 +61,15 @@ pub struct Recorder {
     pub rate: f64,
 }
 
+/// Something in the direct way of all sounds to a microphone, as a pillar or a person beside it: echoes pass it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Obstacle {
+    /// Number of the microphone, from 0.
+    pub microphone: usize,
+    /// How much weaker it makes the direct sound, dB: 0 to 200. The sound is as late as without it.
+    pub attenuation_db: f64,
+}
+
 /// Options of [`simulate_room`](crate::simulate_room).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -107,6 +116,8 @@ pub struct RoomOptions {
     /// The recorders: the first has the first microphones, and so on. Default none: one with all microphones, whose
     /// clock is right.
     pub recorders: Vec<Recorder>,
+    /// What is in the way of sounds. Default: nothing. Of several before one microphone, attenuations add up.
+    pub obstacles: Vec<Obstacle>,
     /// Greatest amount of a sample without noise: all microphones have one gain that makes it so; more than 0, at most 1.
     /// Default 0.5.
     pub peak: f64,
@@ -136,6 +147,7 @@ impl Default for RoomOptions {
             jitter: 0.3,
             duration: None,
             recorders: Vec::new(),
+            obstacles: Vec::new(),
             peak: 0.5,
             seed: 0,
         }
@@ -153,6 +165,12 @@ impl RoomOptions {
         match self.sound {
             Sound::Clap { length, .. } | Sound::Chirp { length, .. } => length,
         }
+    }
+
+    /// By which factor the direct sound is weaker at this microphone, from 0.
+    pub(super) fn passed(&self, microphone: usize) -> f64 {
+        let before = self.obstacles.iter().filter(|obstacle| obstacle.microphone == microphone);
+        before.map(|obstacle| 10.0_f64.powf(-obstacle.attenuation_db / 20.0)).product()
     }
 
     /// The recorders, at least one.

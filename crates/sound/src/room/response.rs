@@ -19,15 +19,22 @@ impl Response<'_> {
         (self.options.echo_time() * f64::from(self.options.sample_rate) * pace).ceil() as usize + TAPS + 2
     }
 
-    /// Samples of the response to an impulse of size 1 at a distance of 1 metre. The direct sound arrives at the sample
-    /// [`BEFORE`], and by `fraction` of a sample later.
-    pub(super) fn samples(&self, source: [f64; 3], microphone: [f64; 3], pace: f64, fraction: f64) -> Vec<f64> {
+    /// Samples of the response to an impulse of size 1 at a distance of 1 metre. The direct sound, of which the factor `passed`
+    /// passes obstacles, arrives at the sample [`BEFORE`], and by `fraction` of a sample later.
+    pub(super) fn samples(
+        &self,
+        source: [f64; 3],
+        microphone: [f64; 3],
+        pace: f64,
+        fraction: f64,
+        passed: f64,
+    ) -> Vec<f64> {
         let mut samples = vec![0.0; self.length(pace)];
         let direct = distance(source, microphone);
         let scale = f64::from(self.options.sample_rate) * pace / self.options.speed;
         let begin = BEFORE as f64 + fraction;
         if self.reflection == 0.0 {
-            self.kernel.add(&mut samples, begin, 1.0 / direct);
+            self.kernel.add(&mut samples, begin, passed / direct);
             return samples;
         }
         // A little more, or rounding could take the direct sound.
@@ -39,7 +46,8 @@ impl Response<'_> {
             while powers.len() <= reflections as usize {
                 powers.push(powers[powers.len() - 1] * self.reflection);
             }
-            let size = powers[reflections as usize] / distance;
+            let passed = if reflections == 0 { passed } else { 1.0 };
+            let size = passed * powers[reflections as usize] / distance;
             self.kernel.add(&mut samples, begin + (distance - direct) * scale, size);
         });
         samples
@@ -52,7 +60,7 @@ mod tests {
 
     fn response(options: &RoomOptions, reflection: f64, source: [f64; 3], microphone: [f64; 3]) -> Vec<f64> {
         let kernel = Kernel::new();
-        Response { options, reflection, kernel: &kernel }.samples(source, microphone, 1.0, 0.0)
+        Response { options, reflection, kernel: &kernel }.samples(source, microphone, 1.0, 0.0, 1.0)
     }
 
     #[test]
@@ -79,6 +87,19 @@ mod tests {
         }
         // There is nothing else.
         assert!((samples.iter().sum::<f64>() - found).abs() < 1e-12);
+    }
+
+    #[test]
+    fn obstacles_weaken_the_direct_sound_alone() {
+        let (options, kernel) = (RoomOptions::default(), Kernel::new());
+        for reflection in [0.0, 0.8] {
+            let response = Response { options: &options, reflection, kernel: &kernel };
+            let samples = |passed: f64| response.samples([1.0, 2.0, 1.2], [4.0, 2.0, 1.2], 1.0, 0.3, passed);
+            let mut direct = vec![0.0; samples(1.0).len()];
+            kernel.add(&mut direct, BEFORE as f64 + 0.3, 0.75 / 3.0);
+            let lost = samples(1.0).into_iter().zip(samples(0.25)).map(|(whole, left)| whole - left);
+            assert!(lost.zip(direct).all(|(lost, direct)| (lost - direct).abs() < 1e-12));
+        }
     }
 
     #[test]

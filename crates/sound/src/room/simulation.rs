@@ -105,7 +105,8 @@ pub fn simulate_room(options: &RoomOptions) -> Result<RoomRecording, RoomError> 
                 let arrival = pace * (time + travel - recorder.start);
                 arrivals[k].push(arrival);
                 let place = arrival * sample_rate;
-                let way = response.samples(source, microphones[k], pace, place - place.floor());
+                let (fraction, passed) = (place - place.floor(), options.passed(k));
+                let way = response.samples(source, microphones[k], pace, fraction, passed);
                 let heard = fourier.product(&sound, &fourier.spectrum(&way));
                 // Both signals begin before their time.
                 add(&mut channels[k], place.floor() as i64 - 2 * BEFORE as i64, &heard);
@@ -139,7 +140,7 @@ fn default_duration(options: &RoomOptions, times: &[f64], recorders: &[Recorder]
     recorders.iter().map(|recorder| pace(recorder) * (end - recorder.start)).fold(0.0, f64::max) + 1.0
 }
 
-/// The mean power of the direct sounds at the microphones while they last, at a gain of 1.
+/// The mean power of the direct sounds at the microphones while they last, at a gain of 1 and without obstacles.
 fn direct_power(
     options: &RoomOptions,
     waveforms: &[Waveform],
