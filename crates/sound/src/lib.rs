@@ -34,8 +34,9 @@
 //! them its bytes. Rooms begin with room/simulation.rs: options are checked (`check`), points and times drawn
 //! (`placement`), sounds made (`waveform`), and laid on the way to each microphone (`response`) with its echoes
 //! (`images`), each at its fraction of a sample (`kernel`). Arrival times begin with times/arrivals.rs: a leading edge
-//! in each channel (`edge`), delays between each two (`spectrum`, `correlation`), those that agree (`consistent`), and how
-//! well they are known (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
+//! in each channel (`edge`), delays between each two (`spectrum`, `correlation`), those that agree (`consistent`), the
+//! direct sound in each channel (`direct`), which is the first of its ways (`paths`), and how well its time is known
+//! (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
 //! alone (times/known.rs). Events begin with events/find.rs, those of recorders that were started apart with
 //! recorders/gathered.rs, and `listen` puts all together; `picture` draws them.
 

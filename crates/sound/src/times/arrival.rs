@@ -2,9 +2,6 @@
 
 use serde::Serialize;
 
-/// How strong the direct sound is at least beside the strongest echo: 10 dB weaker.
-pub(super) const STRONG: f64 = 0.316;
-
 /// Times of a channel, beside another one or its signal, that are kept.
 pub(super) const PEAKS: usize = 4;
 
@@ -16,8 +13,8 @@ pub struct Arrival {
     /// have in common is not determined better than the leading edge.
     pub seconds: f64,
     /// Standard deviation, seconds, but for what all channels have in common: from the noise and echoes that are mixed with
-    /// the sound, and from how far the pairs of channels disagree.
+    /// the sound. Where it is in doubt which of several times is that of the direct sound, it is how far these are apart.
     pub sigma: f64,
-    /// Times that fit the other channels less well, as of echoes, likeliest first, seconds.
+    /// Other times at which the channel may hear the sound, as those of echoes, the strongest first, seconds.
     pub alternatives: Vec<f64>,
 }

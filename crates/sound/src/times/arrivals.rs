@@ -1,9 +1,9 @@
 //! Arrival times from the parts of all channels in which an event is.
 
-use super::arrival::{Arrival, PEAKS, STRONG};
-use super::consistent::{Channel, Pair, consistent};
+use super::arrival::{Arrival, PEAKS};
+use super::consistent::{Pair, consistent};
 use super::correlation::{Correlation, Delays};
-use super::deviation::deviations;
+use super::direct;
 use super::edge::edge;
 use super::error::TimeError;
 use super::known;
@@ -11,15 +11,16 @@ use super::options::{TimeOptions, Window};
 use super::spectrum::Spectrum;
 use crate::signal::{Compression, Signal};
 
-/// How much more than is compared at last is compared first, and how often.
+/// How much more than is compared at last is compared first: an echo may have been the first to rise above the noise, or above
+/// its share of the loudest one.
 const WIDER: f64 = 1.5;
-const PASSES: usize = 2;
 
 /// How large peaks of a pair of channels are at least beside the largest.
 const LEAST: f64 = 0.4;
 
 /// The times at which an event begins in each channel, from the part of each in which it is; `None` for channels that have
-/// no such part, or in whose part nothing rises above the noise. Parts in which a signal is looked for hold all of it.
+/// no such part, or in whose part nothing rises above the noise, or nothing
+/// that the others have too. Parts in which a signal is looked for hold all of it.
 ///
 /// # Errors
 /// If an option is out of range, the sample rate of a part is not from 100 Hz to 10 MHz, or the signal has too little in the
@@ -49,33 +50,19 @@ pub fn arrival_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> R
     if options.signal != Signal::Unknown {
         return known_times(windows, options);
     }
-    let mut edges: Vec<Option<f64>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
-    // An echo may have been the first to rise above the noise, or above its share of the loudest one.
+    let edges: Vec<Option<f64>> = windows.iter().map(|window| edge(window.as_ref()?, options)).collect();
     let wide = TimeOptions { length: WIDER * options.length, before: WIDER * options.length / 2.0, ..options.clone() };
-    let delays = Delays::new(&wide);
-    for _ in 0..PASSES {
-        let spectra = spectra(windows, &edges, &wide);
-        let found = compared(&spectra, options.whitening, &delays, true);
-        let Some(sound) = Spectrum::common(&delayed(&spectra, &found)) else { break };
-        for (k, spectrum) in &spectra {
-            let strong = Correlation::of(spectrum, &sound, options.whitening).peaks(STRONG, &delays);
-            let first = strong.iter().map(|peak| peak.delay).min_by(f64::total_cmp);
-            if let (Some(edge), Some(delay)) = (&mut edges[*k], first) {
-                *edge += delay;
-            }
-        }
-    }
-    let spectra = spectra(windows, &edges, options);
-    let delays = Delays::new(options);
-    let found = compared(&spectra, options.whitening, &delays, false);
-    let sigmas = deviations(&delayed(&spectra, &found), options.whitening, &delays);
+    let heard: Vec<(usize, f64)> = edges.iter().enumerate().filter_map(|(k, edge)| Some((k, (*edge)?))).collect();
+    let of = |&(k, edge): &(usize, f64)| Some(Spectrum::new(windows[k].as_ref()?, edge, &wide, Spectrum::step(&wide)));
+    let spectra: Vec<Spectrum> = heard.iter().filter_map(of).collect();
+    let off = compared(&spectra, options.whitening, &Delays::new(&wide));
+    let channel = |(&(k, edge), off): (&(usize, f64), f64)| {
+        Some(direct::Channel { window: windows[k].as_ref()?, edge, time: edge + off })
+    };
+    let channels: Vec<direct::Channel<'_>> = heard.iter().zip(off).filter_map(channel).collect();
     let mut all = vec![None; windows.len()];
-    for (((k, _), channel), sigma) in spectra.iter().zip(found).zip(sigmas) {
-        let Some(edge) = edges[*k] else { continue };
-        let alternatives = channel.alternatives.iter().map(|off| edge + off).collect();
-        // Both see the same noise and echoes; the pairs also see where a channel is not one with the others.
-        let sigma = sigma.unwrap_or(options.length).max(channel.spread);
-        all[*k] = Some(Arrival { seconds: edge + channel.off, sigma, alternatives });
+    for ((k, _), arrival) in heard.iter().zip(direct::arrivals(channels, options, &wide)) {
+        all[*k] = arrival;
     }
     Ok(all)
 }
@@ -99,34 +86,23 @@ fn known_times(windows: &[Option<Window<'_>>], options: &TimeOptions) -> Result<
     Ok(windows.iter().map(of).collect())
 }
 
-/// The spectra of the channels that have an edge, with their places.
-fn spectra(windows: &[Option<Window<'_>>], edges: &[Option<f64>], options: &TimeOptions) -> Vec<(usize, Spectrum)> {
-    let of = |k: usize| Some((k, Spectrum::new(windows[k].as_ref()?, edges[k]?, options)));
-    (0..windows.len()).filter_map(of).collect()
-}
-
-/// Spectra and their delays beside the leading edges.
-fn delayed<'a>(spectra: &'a [(usize, Spectrum)], found: &[Channel]) -> Vec<(&'a Spectrum, f64)> {
-    spectra.iter().zip(found).map(|((_, spectrum), channel)| (spectrum, channel.off)).collect()
-}
-
-/// What the pairs of channels say of each.
-fn compared(spectra: &[(usize, Spectrum)], whitening: f64, delays: &Delays, are_edges_rough: bool) -> Vec<Channel> {
+/// The delays of channels beside their leading edges, by what each two have in common, seconds.
+fn compared(spectra: &[Spectrum], whitening: f64, delays: &Delays) -> Vec<f64> {
     let mut pairs = Vec::new();
-    for (a, (_, first)) in spectra.iter().enumerate() {
-        for (b, (_, second)) in spectra.iter().enumerate().skip(a + 1) {
+    for (a, first) in spectra.iter().enumerate() {
+        for (b, second) in spectra.iter().enumerate().skip(a + 1) {
             let mut peaks = Correlation::of(first, second, whitening).peaks(LEAST, delays);
             peaks.truncate(PEAKS);
             pairs.push(Pair { channels: [a, b], peaks });
         }
     }
-    consistent(spectra.len(), &pairs, are_edges_rough)
+    consistent(spectra.len(), &pairs)
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Arrival, Signal, TimeOptions, Window, arrival_times};
-    use crate::{Placement, RoomOptions, simulate_room};
+    use crate::{Obstacle, Placement, RoomOptions, simulate_room};
 
     /// Seconds of a channel before and after the direct sound at the first microphone that hears it.
     const BEFORE: f64 = 0.05;
@@ -163,9 +139,8 @@ mod tests {
     /// condition, of ten microphones and ten claps.
     #[test]
     fn claps_in_a_room_are_told_to_microseconds() {
-        // At 10 dB distant microphones lose some.
-        let conditions = [(0.2, 20.0, 98), (0.4, 20.0, 98), (0.7, 20.0, 98), (0.4, 10.0, 90)];
-        for (seed, (reverberation, signal_to_noise, least)) in (0..).zip(conditions) {
+        for (seed, (reverberation, signal_to_noise)) in (0..).zip([(0.2, 20.0), (0.4, 20.0), (0.7, 20.0), (0.4, 10.0)])
+        {
             let mut options = RoomOptions::default();
             (options.microphones, options.sources) = (Placement::Random(10), Placement::Random(10));
             (options.reverberation, options.signal_to_noise) = (reverberation, Some(signal_to_noise));
@@ -174,7 +149,26 @@ mod tests {
             all.sort_by(f64::total_cmp);
             let near = all.iter().filter(|error| **error < 30e-6).count();
             let said = format!("{reverberation} s, {signal_to_noise} dB: {near} of 100, median {:e}", all[50]);
-            assert!(near >= least && all[50] < 2e-6, "{said}");
+            assert!(near >= 98 && all[50] < 2e-6, "{said}");
+        }
+    }
+
+    /// A pillar beside a microphone makes the direct sound weaker than the first echo. By 10 dB nine of ten are right; where one
+    /// is not, also by 14 dB, the standard deviation tells in 95 %.
+    #[test]
+    fn the_direct_sound_behind_an_obstacle_comes_before_the_echo() {
+        for (attenuation_db, least) in [(10.0, 36), (14.0, 0)] {
+            let (mut right, mut told) = (0, 0);
+            for seed in 30..34 {
+                let obstacles = vec![Obstacle { microphone: 0, attenuation_db }];
+                let mut options = RoomOptions { obstacles, seed, ..RoomOptions::default() };
+                (options.microphones, options.sources) = (Placement::Random(10), Placement::Random(10));
+                for (error, found) in errors(&options).into_iter().step_by(10) {
+                    right += usize::from(error < 30e-6);
+                    told += usize::from(found.is_none_or(|found| error < f64::max(30e-6, 5.0 * found.sigma)));
+                }
+            }
+            assert!(right >= least && told >= 38, "{attenuation_db} dB: {right} and {told} of 40");
         }
     }
 
@@ -193,6 +187,10 @@ mod tests {
                         errors(&options).iter().filter_map(|(error, found)| Some((found.as_ref()?.sigma, *error))),
                     );
                 }
+                // A wrong arrival with a small standard deviation is the worst that can be told.
+                let wrong = all.iter().filter(|(sigma, error)| *error > f64::max(30e-6, 5.0 * sigma)).count();
+                let share = wrong as f64 / all.len() as f64;
+                assert!(share < 0.01, "{reverberation} s, {signal_to_noise} dB, {sample_rate} Hz: {share}");
                 let median = |mut all: Vec<f64>| {
                     all.sort_by(f64::total_cmp);
                     all[all.len() / 2]

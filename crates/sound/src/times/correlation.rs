@@ -89,6 +89,18 @@ impl Correlation {
         found
     }
 
+    /// Where it is largest, and its root mean square over all delays; `None` where it is nowhere positive.
+    pub(super) fn largest(&self, delays: &Delays) -> Option<(f64, f64)> {
+        let (length, most) = (delays.fourier.length(), delays.most);
+        let spacing = 1.0 / (length as f64 * self.step);
+        let all = delays.fourier.signal(self.padded(self.values.iter().copied()));
+        let value = |k: usize| all[(length + k - most) % length];
+        let at = (1..2 * most).max_by(|a, b| value(*a).total_cmp(&value(*b))).filter(|at| value(*at) > 0.0)?;
+        let mean = (0..=2 * most).map(|k| value(k).powi(2)).sum::<f64>() / (2 * most + 1) as f64;
+        // A transform has half of each frequency, and is divided by its length.
+        Some((self.top((at as f64 - most as f64) * spacing, spacing), 0.5 * length as f64 * mean.sqrt()))
+    }
+
     /// How fast the slope falls at the top of a peak.
     pub(super) fn sharpness(&self, delay: f64) -> f64 {
         let [_, _, curvature] = self.at(delay);
@@ -119,7 +131,7 @@ impl Correlation {
     }
 
     /// The correlation at a delay, and its first and second derivative.
-    fn at(&self, delay: f64) -> [f64; 3] {
+    pub(super) fn at(&self, delay: f64) -> [f64; 3] {
         let mut turn = Complex64::cis(TAU * self.first as f64 * self.step * delay);
         let by = Complex64::cis(TAU * self.step * delay);
         let mut sums = [0.0; 3];
@@ -177,7 +189,7 @@ mod tests {
             let spectrum = |at: f64, rate: f64| {
                 let samples = pulse(at, rate);
                 let window = Window { samples: &samples, start: 0.0, sample_rate: rate };
-                Spectrum::new(&window, 0.009, &options)
+                Spectrum::new(&window, 0.009, &options, Spectrum::step(&options))
             };
             let delays = Delays::new(&options);
             let found = Correlation::of(&spectrum(0.01 + delay, rate), &spectrum(0.01, other), 0.7).peaks(0.4, &delays);

@@ -6,23 +6,10 @@
 //! on either side. Over the sharpness of the peak that is a standard deviation of its place.
 
 use super::correlation::{Correlation, Delays};
-use super::spectrum::Spectrum;
+use std::f64::consts::SQRT_2;
 
 /// The median of the amounts of a normal variable of standard deviation 1.
 const MEDIAN: f64 = 0.6745;
-
-/// Standard deviations of the times of channels, seconds, which have these delays beside their leading edges; `None` of a
-/// single channel, which has nothing to compare with, and where there is no peak.
-pub(super) fn deviations(channels: &[(&Spectrum, f64)], whitening: f64, delays: &Delays) -> Vec<Option<f64>> {
-    let of = |k: usize| {
-        let (own, delay) = channels[k];
-        // Compared with itself, a channel would have less than it has.
-        let others: Vec<(&Spectrum, f64)> = [&channels[..k], &channels[k + 1..]].concat();
-        let sound = Spectrum::common(&others)?;
-        deviation(&Correlation::of(own, &sound, whitening), delay, delays)
-    };
-    (0..channels.len()).map(of).collect()
-}
 
 /// The standard deviation of the place of a peak, seconds, by what is within these delays of it.
 pub(super) fn deviation(correlation: &Correlation, delay: f64, delays: &Delays) -> Option<f64> {
@@ -30,6 +17,7 @@ pub(super) fn deviation(correlation: &Correlation, delay: f64, delays: &Delays) 
     let mut slopes: Vec<f64> = correlation.odd_slopes(delay, delays).into_iter().map(f64::abs).collect();
     // The median leaves out the peaks of echoes.
     slopes.sort_by(f64::total_cmp);
-    let typical = slopes.get(slopes.len() / 2)? / MEDIAN;
+    // At the peak both sides of what is odd are one; elsewhere they are independent, and it is half of their sum.
+    let typical = SQRT_2 * slopes.get(slopes.len() / 2)? / MEDIAN;
     (sharpness > 0.0).then(|| typical / sharpness).filter(|sigma| sigma.is_finite())
 }

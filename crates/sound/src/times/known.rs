@@ -3,7 +3,7 @@
 //! A compressed channel has a pulse for each way of the sound. Its envelope tells the pulses apart, and the wave under the
 //! envelope, which is highest where the signal begins, tells the time.
 
-use super::arrival::{Arrival, PEAKS, STRONG};
+use super::arrival::{Arrival, PEAKS};
 use super::correlation::{Correlation, Delays};
 use super::deviation::deviation;
 use super::options::Window;
@@ -11,6 +11,9 @@ use crate::signal::Compression;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// How strong the direct sound is at least beside the strongest echo: 10 dB weaker.
+const STRONG: f64 = 0.316;
 
 /// How much larger than the median of the envelope before it the top must be: of normal noise, the envelope is so in one of 4
 /// million, exp(-(4.7 x 1.177)^2 / 2), and a window has some thousand that are independent.

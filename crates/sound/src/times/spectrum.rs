@@ -26,10 +26,9 @@ impl Spectrum {
         1.0 / (PADDING * options.length)
     }
 
-    /// Of what is compared about a leading edge, seconds by the recorder's clock.
-    pub(super) fn new(window: &Window<'_>, edge: f64, options: &TimeOptions) -> Spectrum {
+    /// Of what is compared about a leading edge, seconds by the recorder's clock; frequencies have this step, Hz.
+    pub(super) fn new(window: &Window<'_>, edge: f64, options: &TimeOptions, step: f64) -> Spectrum {
         let (rate, [low, high]) = (window.sample_rate, options.band);
-        let step = Spectrum::step(options);
         // Frequencies are whole steps.
         let lowest = (low / step).ceil();
         let count = (high.min(HIGHEST * rate) / step - lowest).max(0.0) as usize + 1;
@@ -52,22 +51,19 @@ impl Spectrum {
         Spectrum { values, step, first: lowest as usize }
     }
 
-    /// The sound that channels have in common, of these delays beside their leading edges: what is on other ways is at
-    /// other times in each.
-    pub(super) fn common(all: &[(&Spectrum, f64)]) -> Option<Spectrum> {
-        let (first, _) = all.first()?;
-        let mut values = vec![Complex64::default(); first.values.len()];
-        for (spectrum, off) in all {
-            let power: f64 = spectrum.values.iter().map(Complex64::norm_sqr).sum();
-            let turn = Complex64::cis(TAU * first.step * off);
-            let mut factor =
-                Complex64::cis(TAU * first.first as f64 * first.step * off) / power.sqrt().max(f64::MIN_POSITIVE);
-            for (sum, value) in values.iter_mut().zip(&spectrum.values) {
-                *sum += factor * value;
-                factor *= turn;
-            }
+    /// The sound that channels have in common, if these are about the time at which each hears it: what is on other ways is
+    /// at other times in each.
+    pub(super) fn common<'a>(all: impl IntoIterator<Item = &'a Spectrum>) -> Option<Spectrum> {
+        let mut sound: Option<Spectrum> = None;
+        for spectrum in all {
+            let Spectrum { values, step, first } = spectrum;
+            let power: f64 = values.iter().map(Complex64::norm_sqr).sum();
+            let factor = 1.0 / power.sqrt().max(f64::MIN_POSITIVE);
+            let silence = || Spectrum { values: vec![Complex64::default(); values.len()], step: *step, first: *first };
+            let sums = &mut sound.get_or_insert_with(silence).values;
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
         }
-        Some(Spectrum { values, ..**first })
+        sound
     }
 }
 
