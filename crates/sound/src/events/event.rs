@@ -88,8 +88,8 @@ pub enum DropReason {
         /// How many must.
         least: usize,
     },
-    /// Another event is so near that their sounds cannot be kept apart. Of two that begin within the time that sound takes
-    /// over the extent, the one that more channels hear is kept; of two further apart, whose windows overlap, the earlier one.
+    /// Another event is so near that their sounds cannot be kept apart. The one that more channels hear is kept; if as many hear
+    /// both, the louder one where windows overlap, and otherwise the earlier one.
     Overlap {
         /// When the one that is kept begins, seconds.
         kept: f64,

@@ -29,6 +29,7 @@ pub(super) fn group(channels: &[Vec<Onset>], options: &EventOptions) -> Grouped 
         options,
         spread: options.spread() + TOLERANCE,
         strays: None,
+        last: Vec::new(),
         grouped: Grouped { events: Vec::new(), dropped: Vec::new(), uses: vec![(0, 0); channels.len()] },
     };
     while let Some(begin) = grouping.earliest() {
@@ -66,6 +67,8 @@ struct Grouping<'a> {
     /// Seconds in which all channels hear an event.
     spread: f64,
     strays: Option<Strays>,
+    /// Of each channel, what the last event uses, and its echoes.
+    last: Vec<(usize, usize)>,
     grouped: Grouped,
 }
 
@@ -169,36 +172,61 @@ impl Grouping<'_> {
         self.grouped.dropped.push(DroppedEvent { seconds: strays.begin, reason });
     }
 
-    /// Takes the event that begins here, with all its echoes.
+    /// Takes the event that begins here, with all its echoes. Of two whose windows overlap, the one that is heard better is
+    /// kept.
     fn take(&mut self, begin: f64) {
         self.end_strays();
         let end = begin + self.spread;
         let direct = |onsets: &&[Onset]| direct(onsets, end, self.options.weakest_first_db);
         let onsets: Vec<Option<Onset>> = self.left.iter().map(direct).collect();
         let seconds = onsets.iter().flatten().map(|onset| onset.seconds).fold(f64::INFINITY, f64::min);
-        let kept = self.grouped.events.last().filter(|event| seconds - MARGIN < event.window.end);
-        let kept = kept.map(|event| event.seconds);
-        for ((left, uses), onset) in self.left.iter_mut().zip(&mut self.grouped.uses).zip(&onsets) {
+        let mut uses = Vec::with_capacity(onsets.len());
+        for (left, onset) in self.left.iter_mut().zip(&onsets) {
             // Echoes are also in channels that have not heard the direct sound.
             let first = left.first().filter(|first| first.seconds <= end).map_or(begin, |first| first.seconds);
-            let over = left.partition_point(|onset| onset.seconds <= first + self.options.dead_time());
-            if kept.is_none() {
-                let used = usize::from(onset.is_some());
-                *uses = (uses.0 + used, uses.1 + over.saturating_sub(used));
-            }
+            let over = over(left, end, first + self.options.dead_time());
+            let used = usize::from(onset.is_some());
+            uses.push((used, over.saturating_sub(used)));
             *left = &left[over..];
         }
-        match kept {
-            Some(kept) => {
-                self.grouped.dropped.push(DroppedEvent { seconds, reason: DropReason::Overlap { kept } });
+        let events = &mut self.grouped.events;
+        if let Some(other) = events.last().filter(|event| seconds - MARGIN < event.window.end) {
+            let (other_seconds, is_better) = (other.seconds, hearing(&onsets) > hearing(&other.onsets));
+            let (lost, kept) = if is_better { (other_seconds, seconds) } else { (seconds, other_seconds) };
+            self.grouped.dropped.push(DroppedEvent { seconds: lost, reason: DropReason::Overlap { kept } });
+            if !is_better {
+                return;
             }
-            None => {
-                let after = self.options.spread() + self.options.signal.seconds() + MARGIN;
-                let window = (seconds - MARGIN).max(0.0)..seconds + after;
-                self.grouped.events.push(Event { seconds, onsets, window });
+            events.pop();
+            for (all, last) in self.grouped.uses.iter_mut().zip(&self.last) {
+                *all = (all.0 - last.0, all.1 - last.1);
             }
         }
+        for (all, uses) in self.grouped.uses.iter_mut().zip(&uses) {
+            *all = (all.0 + uses.0, all.1 + uses.1);
+        }
+        self.last = uses;
+        let after = self.options.spread() + self.options.signal.seconds() + MARGIN;
+        events.push(Event { seconds, onsets, window: (seconds - MARGIN).max(0.0)..seconds + after });
     }
+}
+
+/// How well an event is heard: by how many channels, and how loud it is in all of them, dB.
+fn hearing(onsets: &[Option<Onset>]) -> (usize, f64) {
+    let heard = || onsets.iter().flatten();
+    (heard().count(), heard().map(|onset| onset.strength_db).sum())
+}
+
+/// How many onsets of a channel belong to an event whose direct sounds end at `end`: all until `dead`, but none from one on
+/// that is later than direct sounds and louder than all before, as echoes are not.
+fn over(onsets: &[Onset], end: f64, dead: f64) -> usize {
+    let mut loudest = f64::INFINITY;
+    let belongs = |onset: &&Onset| {
+        let is_another = onset.seconds > end && onset.strength_db > loudest + LOUDER;
+        loudest = if loudest.is_finite() { loudest.max(onset.strength_db) } else { onset.strength_db };
+        onset.seconds <= dead && !is_another
+    };
+    onsets.iter().take_while(belongs).count()
 }
 
 /// The direct sound in a channel: the first of its onsets until `end` that is not more than `weaker` dB below the strongest
@@ -291,6 +319,24 @@ mod tests {
         assert_eq!(near.uses, [(1, 0); 4]);
         let far = two(0.19);
         assert_eq!((far.events.len(), far.dropped.len()), (2, 0));
+    }
+
+    #[test]
+    fn of_events_whose_windows_overlap_the_one_that_more_hear_is_kept() {
+        let first: &[(f64, f64)] = &[(1.0, 30.0), (1.01, 28.0), (1.17, 30.0)];
+        let second: &[(f64, f64)] = &[(1.18, 20.0)];
+        let grouped = grouped(&[first, first, first, first, second, second]);
+        assert_eq!((grouped.events.len(), grouped.events[0].seconds), (1, 1.17));
+        assert_eq!(grouped.dropped, [DroppedEvent { seconds: 1.0, reason: DropReason::Overlap { kept: 1.17 } }]);
+        assert_eq!(grouped.uses, [(1, 0); 6]);
+    }
+
+    #[test]
+    fn a_clap_in_the_dead_time_of_a_weak_sound_is_no_echo_of_it() {
+        let onsets: &[(f64, f64)] = &[(1.0, 15.0), (1.03, 14.0), (1.12, 35.0), (1.14, 30.0)];
+        let grouped = grouped(&[onsets; 4]);
+        assert_eq!((grouped.events.len(), grouped.events[0].seconds), (1, 1.12));
+        assert_eq!(grouped.uses, [(1, 1); 4]);
     }
 
     #[test]

@@ -121,6 +121,18 @@ fn score(reverberation: f64, decibel: f64, seed: u64, options: &EventOptions) ->
 }
 
 #[test]
+fn claps_half_a_second_apart_are_all_found() {
+    for (reverberation, seed) in [(0.2, 40), (0.4, 41), (0.7, 42)] {
+        let mut options = room(reverberation, 20.0, seed);
+        (options.interval, options.jitter) = (0.5, 0.0);
+        let recording = simulate_room(&options).unwrap();
+        let mut score = Score::default();
+        score.add(&found(recording.sample_rate, &recording.channels), &recording);
+        assert_eq!((score.events, score.missed, score.wrong, score.dropped), (20, 0, 0, 0), "{reverberation} s");
+    }
+}
+
+#[test]
 fn claps_are_found_in_echoes() {
     // Another room for each.
     for (seed, reverberation) in [(0, 0.2), (1, 0.4), (2, 0.7)] {
