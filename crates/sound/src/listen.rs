@@ -361,4 +361,27 @@ mod tests {
             assert!(count >= 72 && near * 100 >= 98 * count && errors[count / 2] < 5e-6, "{said}");
         }
     }
+
+    /// A loudspeaker is carried through the room, and chirps once a second.
+    #[test]
+    fn chirps_of_a_moving_source_are_heard_to_microseconds() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("chirps.wav");
+        let (from, to, length) = (1000.0, 6000.0, 0.2);
+        let mut options = RoomOptions { sound: Sound::Chirp { from, to, length }, seed: 80, ..RoomOptions::default() };
+        let on_line = |k: u8| [1.0 + 0.6 * f64::from(k), 1.0 + 0.4 * f64::from(k), 1.5];
+        options.microphones = Placement::Random(10);
+        options.sources = Placement::Given((0..10).map(on_line).collect());
+        (options.interval, options.jitter, options.signal_to_noise) = (1.0, 0.0, Some(0.0));
+        let made = simulate_room(&options).unwrap();
+        write_wav(&path, made.sample_rate, &made.channels, SampleFormat::Int16).unwrap();
+        let heard = listen(&[vec![&path]], &ListenOptions::of(Signal::Chirp { from, to, seconds: length })).unwrap();
+        assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (10, 0));
+        let near = |(j, k): &(usize, usize)| {
+            let found = heard.arrivals[*j][*k].as_ref();
+            found.is_some_and(|found| (found.seconds - made.truth.arrivals[*k][*j]).abs() < 30e-6)
+        };
+        let count = (0..10).flat_map(|j| (0..10).map(move |k| (j, k))).filter(near).count();
+        assert!(count >= 98, "{count} of 100");
+    }
 }
