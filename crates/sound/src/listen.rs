@@ -112,7 +112,7 @@ pub enum ListenError {
 /// let heard = sound::listen(&[vec![&path]], &sound::ListenOptions::default())?;
 /// assert_eq!((heard.arrivals.len(), heard.arrivals[0].len()), (3, 8));
 /// // A list that `tdoa calibrate --units s` reads.
-/// assert!(heard.list().starts_with("receiver,event,time_s,sigma_s\nclaps:1,1,"));
+/// assert!(heard.list().starts_with("receiver,event,time_s,weight\nclaps:1,1,"));
 /// # std::fs::remove_dir_all(folder)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -243,19 +243,21 @@ impl Heard {
         )
     }
 
-    /// A table of the arrivals, one a line: `receiver,event,time_s,sigma_s`, with [names](Heard::names) of channels, numbers
-    /// of events from 1, and seconds by the clock of the channel's recorder. Of several recorders there is a further column
+    /// A table of the arrivals, one a line: `receiver,event,time_s,weight`, with [names](Heard::names) of channels, numbers
+    /// of events from 1, and seconds by the clock of the channel's recorder. The weight is one over the square of the standard
+    /// deviation in microseconds: that of one arrival beside another is known better than the factor that all have in common,
+    /// which a calibration can tell. Of several recorders there is a further column
     /// `recorder` with their [names](Heard::recorder_names).
     pub fn list(&self) -> String {
         let (names, recorders) = (self.names(), self.recorder_names());
         let are_several = self.recorders.iter().any(|&recorder| recorder > 0);
-        let mut text = String::from("receiver,event,time_s,sigma_s");
+        let mut text = String::from("receiver,event,time_s,weight");
         text += if are_several { ",recorder\n" } else { "\n" };
         for (j, arrivals) in self.arrivals.iter().enumerate() {
             for ((name, recorder), arrival) in names.iter().zip(&recorders).zip(arrivals) {
                 if let Some(Arrival { seconds, sigma, .. }) = arrival {
                     // Writing to a string does not fail.
-                    let _ = write!(text, "{name},{},{seconds:.9},{sigma:.3e}", j + 1);
+                    let _ = write!(text, "{name},{},{seconds:.9},{:.3e}", j + 1, (1e6 * sigma).powi(-2));
                     let _ = if are_several { writeln!(text, ",{recorder}") } else { writeln!(text) };
                 }
             }

@@ -11,7 +11,7 @@ use crate::{Failure, output};
 /// Finds the claps, chirps or other short sounds in recordings, and when each microphone hears them.
 ///
 /// FILES are WAV (also RF64 and BW64) or FLAC, of one channel or many, with any sample rates. --output writes the arrival times as
-/// a list (receiver,event,time_s,sigma_s) that `tdoa calibrate --units s` reads; `tdoa calibrate FILES` does both.
+/// a list (receiver,event,time_s,weight) that `tdoa calibrate --units s` reads; `tdoa calibrate FILES` does both.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The recordings.

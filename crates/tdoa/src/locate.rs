@@ -174,7 +174,8 @@ impl<const D: usize> Locator<D> {
 
     /// Locates each transmitter of measurements by the network's receivers, which are known by their names, or by their
     /// order where the measurements name none. Values are those that the network would have been calibrated with: by the same
-    /// clocks, and in metres at the speed that was assumed then. Where measurements have candidates, the first one counts.
+    /// clocks, and in metres at the speed that was assumed then. Where measurements have candidates, the first one counts. Weights
+    /// tell measurements of these apart; the median one has the deviation that it had in the calibration.
     ///
     /// # Errors
     /// If a receiver, or its recorder where these have clocks of their own, is none of the network, or the standard deviation of

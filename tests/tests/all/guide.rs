@@ -103,6 +103,7 @@ fn no_page_is_left_out() {
         "tracker.md",
         "checks.md",
         "python.md",
+        "recordings.md",
         "sweeps.md",
     ];
     let mut pages: Vec<String> = std::fs::read_dir(root().join("docs/guide"))

@@ -20,7 +20,7 @@ class Heard:
     Attributes
     ----------
     pseudoranges : Pseudoranges
-        The arrival times as lengths in metres, with their standard deviations: receivers are channels, transmitters are sounds.
+        The arrival times as lengths in metres, with weights: receivers are channels, transmitters are sounds.
     recorders : list of str or None
         The recorder of each receiver, where several were started apart; times are those of its clock.
     warnings : list of str

@@ -91,7 +91,7 @@ fn claps_are_heard_to_microseconds_by_recorders_that_were_started_apart() {
 
     let list = heard.list();
     let lines: Vec<&str> = list.lines().collect();
-    assert_eq!((lines.len(), lines[0]), (161, "receiver,event,time_s,sigma_s,recorder"));
+    assert_eq!((lines.len(), lines[0]), (161, "receiver,event,time_s,weight,recorder"));
     let cells: Vec<&str> = lines[5].split(',').collect();
     assert_eq!([cells[0], cells[1], cells[4]], ["here2:1", "1", "here2"]);
     assert!((cells[2].parse::<f64>().unwrap() - made.truth.arrivals[4][0]).abs() < 1e-3, "{}", lines[5]);
@@ -108,7 +108,7 @@ fn claps_at_regular_times_are_ambiguous() {
     assert!(matches!(unaligned.reason, UnalignedReason::Ambiguous { other: 0, .. }), "{unaligned}");
     // Two channels are too few for an event.
     assert_eq!((heard.arrivals.len(), heard.events.dropped.len()), (0, 8));
-    assert_eq!(heard.list(), "receiver,event,time_s,sigma_s,recorder\n");
+    assert_eq!(heard.list(), "receiver,event,time_s,weight,recorder\n");
 }
 
 #[test]
