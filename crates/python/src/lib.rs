@@ -33,7 +33,7 @@ mod _native {
     #[pymodule_export]
     use crate::family::{Family, Fibre};
     #[pymodule_export]
-    use crate::listen::{listen, write_recording};
+    use crate::listen::{listen, speed_of_sound, write_recording};
     #[pymodule_export]
     use crate::measured::{check_size, heads_list, read};
     #[pymodule_export]

@@ -89,6 +89,12 @@ pub(crate) fn listen<'py>(
     })
 }
 
+/// The speed of sound in air of this temperature in degrees Celsius, metres per second.
+#[pyfunction]
+pub(crate) fn speed_of_sound(celsius: f64) -> f64 {
+    sound::speed_of_sound(celsius)
+}
+
 /// Writes samples, a row a channel, as a recording of floats.
 #[pyfunction]
 pub(crate) fn write_recording(path: &str, samples: PyReadonlyArrayDyn<'_, f32>, rate: u32) -> PyResult<()> {

@@ -40,6 +40,7 @@
 //! alone (times/known.rs). Events begin with events/find.rs, those of recorders that were started apart with
 //! recorders/gathered.rs, and `listen` puts all together; `picture` draws them.
 
+mod air;
 mod error;
 mod events;
 mod flac;
@@ -59,6 +60,7 @@ mod times;
 mod wav;
 mod write;
 
+pub use air::speed_of_sound;
 pub use error::ReadError;
 pub use events::{
     ChannelSamples, DropReason, DroppedEvent, Event, EventChannel, EventError, EventOptions, EventSamples,

@@ -21,9 +21,6 @@ use crate::points::trace;
 use crate::pseudoranges::Pseudoranges;
 use fit::Heard;
 
-/// Name of the clock that all receivers share.
-const ALL_RECEIVERS: &str = "all receivers";
-
 /// What new transmitters are located by: the receivers of a calibration, and what is known of their errors.
 ///
 /// ```
@@ -52,7 +49,9 @@ pub struct Locator<const D: usize = 2> {
     clocks: Vec<RecorderClock>,
     /// What is added to a measurement's length by the offset that transmitters share, where they have none of their own.
     shared_offset: Option<f64>,
-    /// Standard deviation of measurements, metres, or a factor on those that they carry.
+    /// Standard deviation of measurements, metres, or a factor on those that they carry: the one that was given here, and that of
+    /// the calibration.
+    given: Option<f64>,
     sigma: Option<f64>,
     sigma_is_factor: bool,
     /// Factor on lengths of the estimated propagation speed.
@@ -148,18 +147,20 @@ impl<const D: usize> Locator<D> {
         if !network.unique_receivers {
             notes.push("the receivers of the network are not unique, and so no place is".to_string());
         }
-        // Where nothing else is known, the offset that all transmitters had.
+        // One that is known exactly is of a schedule by which these transmitters sent, and new ones need not.
+        let constant = network.offsets.iter().zip(&network.offset_std).find_map(|(offset, std)| offset.zip(*std));
         let shared_offset = match network.emissions {
             Emissions::Unknown => None,
-            Emissions::Constant if network.clocks.is_empty() => network.offsets.iter().flatten().next().copied(),
-            Emissions::Constant | Emissions::Known => Some(0.0),
+            Emissions::Constant => constant.filter(|(_, std)| *std > 0.0).map(|(offset, _)| offset),
+            Emissions::Known => Some(0.0),
         };
         Ok(Locator {
             receivers,
             by_name,
             clocks: network.clocks.clone(),
             shared_offset,
-            sigma: sigma.or(Some(network.sigma).filter(|sigma| *sigma > 0.0 && sigma.is_finite())),
+            given: sigma,
+            sigma: Some(network.sigma).filter(|sigma| *sigma > 0.0 && sigma.is_finite()),
             sigma_is_factor: network.sigma_is_factor,
             speed: network.speed.map_or(1.0, |speed| speed.factor),
             is_unique: network.unique_receivers,
@@ -174,7 +175,7 @@ impl<const D: usize> Locator<D> {
 
     /// Locates each transmitter of measurements by the network's receivers, which are known by their names, or by their
     /// order where the measurements name none. Values are those that the network would have been calibrated with: by the same
-    /// clocks, and in metres at the speed that was assumed then. Where measurements have candidates, the first one counts. Weights
+    /// clocks, in metres at the speed that was assumed then, and less the send times where these were known. Where measurements have candidates, the first one counts. Weights
     /// tell measurements of these apart; the median one has the deviation that it had in the calibration.
     ///
     /// # Errors
@@ -193,9 +194,11 @@ impl<const D: usize> Locator<D> {
         for (i, j, value) in measured.cells().iter() {
             let known = &self.receivers[places[i]];
             let Some(position) = known.position else { continue };
-            let late = clocks[i].map_or(0.0, |clock| lateness(clock, *value)) + self.shared_offset.unwrap_or(0.0);
-            let length = self.speed * (value - late) - known.delay;
-            let noise = deviation(i, j) * if measured.has_sigmas() || self.sigma_is_factor { self.speed } else { 1.0 };
+            // All that the network says is in metres at the estimated speed.
+            let reading = self.speed * value;
+            let late = clocks[i].map_or(0.0, |clock| clock.lateness(reading));
+            let length = reading - late - self.shared_offset.unwrap_or(0.0) - known.delay;
+            let noise = deviation(i, j) * if measured.knows_sigmas() { self.speed } else { 1.0 };
             heard[j].push(Heard { receiver: i, position, length, deviation: noise.hypot(known.variance.sqrt()) });
         }
         let name = |i: usize| self.receivers[places[i]].name.clone();
@@ -231,7 +234,7 @@ impl<const D: usize> Locator<D> {
         }
         let recorder = measured.recorder_name(i);
         let of = |name: &str| self.clocks.iter().find(|clock| clock.recorder == name);
-        match of(recorder).or_else(|| of(ALL_RECEIVERS)) {
+        match of(recorder).or_else(|| of(RecorderClock::ALL_RECEIVERS)) {
             Some(clock) => Ok(Some(clock)),
             None => Err(LocateError::Recorder { recorder: recorder.to_string() }),
         }
@@ -243,21 +246,15 @@ impl<const D: usize> Locator<D> {
         measured: &'a Pseudoranges,
     ) -> Result<impl Fn(usize, usize) -> f64 + use<'a, D>, LocateError> {
         let carry = measured.has_sigmas();
-        // One factor does for both: a calibration's is on what its measurements carried, and one in metres is none on shares.
-        let factor = match self.sigma {
-            Some(sigma) if self.sigma_is_factor == carry => sigma,
+        let factor = match (self.given, self.sigma) {
+            (Some(given), _) => given,
+            // That of a calibration is in metres, or a factor on what its measurements carried.
+            (None, Some(sigma)) if self.sigma_is_factor == carry => sigma,
             _ if measured.knows_sigmas() => 1.0,
             _ => return Err(LocateError::NoSigma),
         };
         Ok(move |i: usize, j: usize| factor * measured.sigma(i, j).unwrap_or(1.0))
     }
-}
-
-/// What a recorder's clock adds to a reading, metres.
-fn lateness(clock: &RecorderClock, reading: f64) -> f64 {
-    // A clock that is fast by a share runs ahead by less of its own readings.
-    let ahead = clock.rate.map_or(0.0, |rate| rate / (1.0 + rate));
-    clock.offset + ahead * (reading - clock.at.unwrap_or(0.0))
 }
 
 #[cfg(test)]

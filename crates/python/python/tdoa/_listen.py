@@ -132,7 +132,7 @@ def listen(
     celsius = number("temperature", temperature)
     if celsius is not None and not -80 <= celsius <= 80:
         raise InputError(f"temperature must be from -80 to 80 degrees Celsius, not {celsius}")
-    metres = number("speed", speed) if celsius is None else 331.3 * (1 + celsius / 273.15) ** 0.5
+    metres = number("speed", speed) if celsius is None else _native.speed_of_sound(celsius)
     metres = 343.0 if metres is None else metres
     if template is not None and chirp is not None:
         raise InputError("template and chirp both tell the sound: give one")

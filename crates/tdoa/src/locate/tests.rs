@@ -204,6 +204,50 @@ fn clocks_are_those_of_the_network() {
     assert_eq!(error, LocateError::Recorder { recorder: "other".to_string() });
 }
 
+/// One offset for all is taken off, with clocks of recorders too; where transmitters sent by a schedule, a new one has an offset
+/// by that clock.
+#[test]
+fn a_constant_is_the_network_s() {
+    for (delays, faster) in [(0.0, 1.0), (100.0, 1.0), (0.0, 1.05)] {
+        let made = simulate(&SimulateOptions { emissions: Emissions::Constant, delays, ..network::<2>(8) }).unwrap();
+        let mut options = CalibrateOptions::new();
+        options.clocks.emissions = Emissions::Constant;
+        if delays > 0.0 {
+            options.clocks.receivers = ReceiverClocks::Offset;
+        }
+        // Lengths at a speed that is too low are too short, until known positions tell it.
+        let mut slow = made.clone();
+        slow.pseudoranges = made.pseudoranges.map(|_, _, value| value / faster);
+        options.estimate_speed = faster > 1.0;
+        let network = calibrated(&slow, &options, true);
+        assert_eq!(network.speed.is_some_and(|speed| (speed.factor - faster).abs() < 0.01), options.estimate_speed);
+        // Three ranges leave one place, where three pseudoranges leave two.
+        for (j, event) in located(&network, &slow, &[2, 5, 8]).iter().enumerate() {
+            let place = event.place.as_ref().unwrap();
+            let off = distance(place.position, made.network.transmitters[KNOWN + j]);
+            let is_near = off < 0.2
+                || place
+                    .others
+                    .iter()
+                    .any(|other| distance(other.position, made.network.transmitters[KNOWN + j]) < 0.2);
+            assert!(is_near && place.redundancy == 1 && place.offset == 0.0, "{delays} {faster} {j}: {off} {event:?}");
+        }
+    }
+    let made = simulate(&network::<2>(9)).unwrap();
+    let times: Vec<f64> = made.network.offsets[..KNOWN].iter().map(|offset| offset - 50.0).collect();
+    let known = heard(&made, &numbers(0, 10), &numbers(0, KNOWN)).with_emission_times(times).unwrap();
+    let mut options = CalibrateOptions::new();
+    options.clocks.emissions = Emissions::Constant;
+    options.anchors = made.network.receivers.iter().copied().map(Some).collect();
+    let network = calibrate(&known, &options).unwrap();
+    for (j, event) in located(&network, &made, &numbers(0, 10)).iter().enumerate() {
+        let place = event.place.as_ref().unwrap();
+        let off = distance(place.position, made.network.transmitters[KNOWN + j]);
+        // A rate against the schedule is told to the noise over the time of twenty events.
+        assert!(off < 0.1 && place.fits && place.redundancy >= 5, "{j}: {off} {event:?}");
+    }
+}
+
 fn network_with_clocks() -> SimulateOptions<2> {
     SimulateOptions { delays: 1000.0, rates: 2e-5, ..network::<2>(6) }
 }
@@ -222,6 +266,14 @@ fn what_cannot_be_located_is_said() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(Locator::new(&network, Some(value)), Err(LocateError::Sigma { .. })), "{value}");
     }
+    // A deviation that is given is a factor where measurements carry their own.
+    let own = made.pseudoranges.clone().with_sigma_of(|_, _| 0.02).unwrap();
+    let [twice, same] = [(Some(2.0), own), (Some(0.04), made.pseudoranges.clone())]
+        .map(|(sigma, measured)| Locator::new(&network, sigma).unwrap().locate(&measured).unwrap());
+    let stds =
+        |all: &[LocatedEvent]| all.iter().map(|event| event.place.as_ref().unwrap().position_std).collect::<Vec<_>>();
+    let pairs = stds(&twice).into_iter().zip(stds(&same));
+    assert!(pairs.into_iter().all(|(a, b)| (a[0] - b[0]).abs() < 1e-6 * b[0]));
     // All receivers at one place tell nothing.
     network.receivers = vec![Some([1.0, 1.0]); 10];
     let nowhere = Locator::new(&network, None).unwrap().locate(&made.pseudoranges).unwrap();

@@ -7,9 +7,6 @@ use crate::clocks::ReceiverClocks;
 use crate::observations::Observations;
 use crate::refine::Covariance;
 
-/// Name of the clock that all receivers share.
-const ALL_RECEIVERS: &str = "all receivers";
-
 impl<const D: usize> State<'_, D> {
     /// Takes the clocks of the best network off the measurements.
     pub(crate) fn take_off_clocks(&mut self) {
@@ -49,7 +46,7 @@ impl<const D: usize> State<'_, D> {
             let rates = recorders.drift();
             Some(RecorderClock {
                 recorder: if self.options.clocks.receivers == ReceiverClocks::Common {
-                    ALL_RECEIVERS.to_string()
+                    RecorderClock::ALL_RECEIVERS.to_string()
                 } else {
                     self.measured.recorder_name(i).to_string()
                 },

@@ -36,6 +36,16 @@ pub struct RecorderClock {
 }
 
 impl RecorderClock {
+    /// Name of the clock that all receivers share.
+    pub(crate) const ALL_RECEIVERS: &str = "all receivers";
+
+    /// What the clock adds to one of its readings, metres.
+    pub fn lateness(&self, reading: f64) -> f64 {
+        // A clock that is fast by a share runs ahead by less of its own readings.
+        let ahead = self.rate.map_or(0.0, |rate| rate / (1.0 + rate));
+        self.offset + ahead * (reading - self.at.unwrap_or(0.0))
+    }
+
     /// With all lengths multiplied by a factor.
     pub(crate) fn rescale(&mut self, factor: f64) {
         let lengths = [Some(&mut self.offset), self.offset_std.as_mut(), self.at.as_mut()];
