@@ -70,4 +70,7 @@ pub enum ReadError {
         /// What is wrong.
         problem: String,
     },
+    /// Somebody who watches the reading has stopped it.
+    #[error("reading was stopped")]
+    Stopped,
 }

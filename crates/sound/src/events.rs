@@ -22,4 +22,5 @@ pub use event::{DropReason, DroppedEvent, Event, EventChannel, Events, Onset};
 pub use find::find_events;
 pub(crate) use find::{events_of, hear};
 pub use options::EventOptions;
+pub(crate) use windows::watched_windows;
 pub use windows::{ChannelSamples, EventSamples, EventWindows, event_windows};

@@ -38,7 +38,7 @@
 //! direct sound in each channel (`direct`), which is the first of its ways (`paths`), and how well its time is known
 //! (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
 //! alone (times/known.rs). Events begin with events/find.rs, those of recorders that were started apart with
-//! recorders/gathered.rs, and `listen` puts all together; `picture` draws them.
+//! recorders/gathered.rs, and `listen` puts all together, watched by a `monitor`; `picture` draws them.
 
 mod air;
 mod error;
@@ -50,6 +50,7 @@ mod input;
 mod kernel;
 mod kind;
 mod listen;
+mod monitor;
 mod picture;
 mod recorders;
 mod recording;
@@ -67,7 +68,8 @@ pub use events::{
     EventWindows, Events, Onset, event_windows, find_events,
 };
 pub use format::{MAX_CHANNELS, MAX_SAMPLE_RATE};
-pub use listen::{Heard, ListenError, ListenOptions, listen};
+pub use listen::{Heard, ListenError, ListenOptions, listen, listen_watched};
+pub use monitor::{ListenMonitor, ListenProgress};
 pub use picture::{Trace, spectrogram, waveforms};
 pub use recorders::{Alignment, AlignmentOptions, RecorderAlignment, Unaligned, UnalignedReason};
 pub use recording::Recording;

@@ -1,17 +1,21 @@
 //! From recordings to arrival times.
 
+mod error;
+
 use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::events::{ChannelSamples, EventChannel, EventError, EventOptions, Events, event_windows};
+use crate::events::{ChannelSamples, EventChannel, EventOptions, Events, watched_windows};
+use crate::monitor::ListenMonitor;
 use crate::recorders::{Alignment, AlignmentOptions, Gathered, OwnEvents, RecorderAlignment};
 use crate::signal::Signal;
 use crate::survey::ChannelSurvey;
-use crate::times::{Arrival, TimeError, TimeOptions, Window, arrival_times};
+use crate::times::{Arrival, TimeOptions, Window, arrival_times};
+
+pub use error::ListenError;
 
 /// Seconds before an onset that tell the noise, and after it, or after the signal, that are looked at.
 const BEFORE: f64 = 0.05;
@@ -64,32 +68,6 @@ pub struct Heard {
     pub samples: Vec<Vec<Option<ChannelSamples>>>,
 }
 
-/// Why recordings cannot be listened to.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ListenError {
-    /// Events cannot be found.
-    #[error(transparent)]
-    Events(#[from] EventError),
-    /// Arrival times cannot be taken.
-    #[error(transparent)]
-    Times(#[from] TimeError),
-    /// A recorder without files.
-    #[error("recorder {number} has no files; give at least one for each recorder")]
-    NoFiles {
-        /// Number of the recorder, from 1.
-        number: usize,
-    },
-    /// More recorders than are compared, each with each.
-    #[error("there are {found} recorders, and at most {most} are aligned; take some of them at a time")]
-    TooManyRecorders {
-        /// How many there are.
-        found: usize,
-        /// How many there may be.
-        most: usize,
-    },
-}
-
 /// Finds the sounds in recordings, and when each channel hears them. Each recorder has some files, which began together and
 /// have one clock; recorders may have been started apart, and each clock have its own rate. Where there are several, they are
 /// aligned by the sounds that they have in common, to tell which sounds are the same; arrival times are not changed by
@@ -117,6 +95,18 @@ pub enum ListenError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> Result<Heard, ListenError> {
+    listen_watched(recorders, options, &ListenMonitor::default())
+}
+
+/// [`listen`], watched by a monitor that tells how far it is, and may stop it.
+///
+/// # Errors
+/// Those of [`listen`], or [`ListenError::Stopped`] if the monitor stops it: there is nothing of what was heard by then.
+pub fn listen_watched<P: AsRef<Path>>(
+    recorders: &[Vec<P>],
+    options: &ListenOptions,
+    monitor: &ListenMonitor,
+) -> Result<Heard, ListenError> {
     options.times.validate()?;
     if let Some(number) = (1..).zip(recorders).find_map(|(number, files)| files.is_empty().then_some(number)) {
         return Err(ListenError::NoFiles { number });
@@ -124,15 +114,19 @@ pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> 
     if recorders.len() > MOST_RECORDERS {
         return Err(ListenError::TooManyRecorders { found: recorders.len(), most: MOST_RECORDERS });
     }
-    let gathered = Gathered::new(recorders, &options.events, &options.alignment)?;
+    let gathered = Gathered::new(recorders, &options.events, &options.alignment, monitor)?;
     // Each recorder reads the same events, by its own clock.
     let own: Vec<OwnEvents<'_>> = gathered.own();
     let mut readers = Vec::with_capacity(own.len());
     for own in &own {
-        readers.push(event_windows(recorders.get(own.clock.recorder).into_iter().flatten(), &own.events)?);
+        let files = recorders.get(own.clock.recorder).into_iter().flatten();
+        readers.push(watched_windows(files, &own.events, monitor)?);
     }
     let (mut arrivals, mut samples) = (Vec::with_capacity(gathered.events.events.len()), Vec::new());
     for j in 0..gathered.events.events.len() {
+        if monitor.is_stopped() {
+            return Err(ListenError::Stopped);
+        }
         let mut parts: Vec<Option<Part<'_>>> = gathered.recorders.iter().map(|_| None).collect();
         for (own, reader) in own.iter().zip(&mut readers) {
             let Some(samples) = reader.next().transpose()? else { continue };
@@ -150,6 +144,7 @@ pub fn listen<P: AsRef<Path>>(recorders: &[Vec<P>], options: &ListenOptions) -> 
             samples.push(parts.iter().map(|part| part.as_ref()?.kept(keep)).collect());
         }
     }
+    monitor.finish();
     let Gathered { events, recorders, alignment } = gathered;
     Ok(Heard { events, arrivals, recorders, alignment, samples })
 }

@@ -9,6 +9,7 @@ use crate::flac::Flac;
 use crate::format::Format;
 use crate::input::Input;
 use crate::kind::{Kind, kind};
+use crate::monitor::ListenMonitor;
 use crate::wav::Wav;
 
 /// A recording that is being read, from its beginning to its end: WAV (also RF64 and BW64) with integers of 8 to 32
@@ -17,6 +18,8 @@ pub struct Recording {
     source: Source,
     /// Of each channel, samples that were no numbers.
     non_finite: Vec<u64>,
+    /// Who is told what is read, and may stop it.
+    monitor: ListenMonitor,
 }
 
 enum Source {
@@ -76,9 +79,14 @@ impl Recording {
             Kind::Wav => Source::Wav(Box::new(Wav::new(input)?)),
             Kind::Flac => Source::Flac(Box::new(Flac::new(input)?)),
         };
-        let mut recording = Recording { source, non_finite: Vec::new() };
+        let mut recording = Recording { source, non_finite: Vec::new(), monitor: ListenMonitor::default() };
         recording.non_finite = vec![0; recording.channels()];
         Ok(recording)
+    }
+
+    /// Reading is watched from now on. It ends with [`ReadError::Stopped`] once the monitor stops it.
+    pub(crate) fn watch(&mut self, monitor: &ListenMonitor) {
+        self.monitor = monitor.clone();
     }
 
     /// Path of the file, as text, or the name that was given.
@@ -155,11 +163,15 @@ impl Recording {
     }
 
     fn append(&mut self, frames: usize, block: &mut [Vec<f32>]) -> Result<usize, ReadError> {
+        if self.monitor.is_stopped() {
+            return Err(ReadError::Stopped);
+        }
         let before = block.first().map_or(0, Vec::len);
         let count = match &mut self.source {
             Source::Wav(wav) => wav.read(frames, block)?,
             Source::Flac(flac) => flac.read(frames, block)?,
         };
+        self.monitor.add((count as u64).saturating_mul(self.channels() as u64));
         for (channel, non_finite) in block.iter_mut().zip(&mut self.non_finite) {
             for sample in channel.iter_mut().skip(before).filter(|sample| !sample.is_finite()) {
                 *sample = 0.0;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::monitor::ListenMonitor;
 use crate::recording::Recording;
 
 use super::error::EventError;
@@ -50,21 +51,23 @@ pub fn find_events<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     options: &EventOptions,
 ) -> Result<Events, EventError> {
-    let (channels, onsets) = hear(paths, options)?;
+    let (channels, onsets) = hear(paths, options, &ListenMonitor::default())?;
     Ok(events_of(channels, &onsets, options))
 }
 
-/// The channels of all files, and the onsets of each: a pass over each file.
+/// The channels of all files, and the onsets of each: a pass over each file. The monitor expects as many samples in a
+/// second pass.
 ///
 /// # Errors
-/// Those of [`find_events`].
+/// Those of [`find_events`], or if the monitor stops the reading.
 pub(crate) fn hear<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     options: &EventOptions,
+    monitor: &ListenMonitor,
 ) -> Result<(Vec<EventChannel>, Vec<Vec<Onset>>), EventError> {
     options.validate()?;
     // All are opened first: what is wrong with the last one is said before the first one is read.
-    let recordings = Recording::open_all(paths)?;
+    let mut recordings = Recording::open_all(paths)?;
     let found = recordings.iter().map(Recording::channels).sum();
     if recordings.is_empty() {
         return Err(EventError::NoRecordings);
@@ -73,8 +76,13 @@ pub(crate) fn hear<P: AsRef<Path>>(
         return Err(EventError::Channels { found, least: options.least_channels });
     }
     let (mut channels, mut onsets): (Vec<EventChannel>, Vec<Vec<Onset>>) = (Vec::new(), Vec::new());
+    monitor.begin(recordings.iter().map(samples_twice).fold(0, u64::saturating_add));
+    recordings.iter_mut().for_each(|recording| recording.watch(monitor));
     for recording in recordings {
+        let (expected, before) = (samples_twice(&recording), monitor.progress().done);
         let heard = file_onsets(recording, options, BLOCK)?;
+        // A header may not say how many samples there are, or too many.
+        monitor.correct(expected, (monitor.progress().done - before).saturating_mul(2));
         for (of_channel, number) in heard.channels.into_iter().zip(1..) {
             channels.push(EventChannel {
                 file: heard.file.clone(),
@@ -89,6 +97,11 @@ pub(crate) fn hear<P: AsRef<Path>>(
         }
     }
     Ok((channels, onsets))
+}
+
+/// How many samples are read of all channels in two passes, as far as it is known.
+fn samples_twice(recording: &Recording) -> u64 {
+    recording.frames().unwrap_or(0).saturating_mul(2 * recording.channels() as u64)
 }
 
 /// The events of these channels, whose onsets are by one clock.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::slice;
 
 use crate::error::ReadError;
+use crate::monitor::ListenMonitor;
 use crate::recording::Recording;
 
 use super::error::EventError;
@@ -45,7 +46,20 @@ pub fn event_windows<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     events: &Events,
 ) -> Result<EventWindows<'_>, EventError> {
-    let files = Recording::open_all(paths)?;
+    watched_windows(paths, events, &ListenMonitor::default())
+}
+
+/// [`event_windows`], watched.
+///
+/// # Errors
+/// Those of [`event_windows`]. An item is an error also if the monitor stops the reading.
+pub(crate) fn watched_windows<'a, P: AsRef<Path>>(
+    paths: impl IntoIterator<Item = P>,
+    events: &'a Events,
+    monitor: &ListenMonitor,
+) -> Result<EventWindows<'a>, EventError> {
+    let mut files = Recording::open_all(paths)?;
+    files.iter_mut().for_each(|recording| recording.watch(monitor));
     same_files(&files, &events.channels)?;
     let files = files.into_iter().map(|recording| File { recording, place: 0, block: Vec::new() }).collect();
     Ok(EventWindows { files, events: events.events.iter(), event: 0, end: f64::NEG_INFINITY })
@@ -149,5 +163,32 @@ impl File {
         let count = self.recording.read_block(left, &mut self.block)?;
         self.place += count as u64;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::events::{EventOptions, find_events};
+    use crate::room::{Placement, RoomOptions, simulate_room};
+    use crate::write::{SampleFormat, write_wav};
+
+    #[test]
+    fn a_monitor_stops_the_second_reading() {
+        let room = RoomOptions { sources: Placement::Random(3), ..RoomOptions::default() };
+        let made = simulate_room(&room).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("claps.wav");
+        write_wav(&path, made.sample_rate, &made.channels, SampleFormat::Int16).unwrap();
+        let events = find_events([&path], &EventOptions::default()).unwrap();
+        let monitor = ListenMonitor::default();
+        let mut windows = watched_windows([&path], &events, &monitor).unwrap();
+        assert!(windows.next().is_some_and(|samples| samples.is_ok()));
+        // Up to the end of the first window, of all channels.
+        let frames = (events.events[0].window.end * 48_000.0).ceil() as u64;
+        assert_eq!(monitor.progress().done, frames * made.channels.len() as u64);
+        monitor.stop();
+        let stopped = |item| matches!(item, Some(Err(EventError::Read(ReadError::Stopped))));
+        assert!(stopped(windows.next()) && windows.next().is_none());
     }
 }

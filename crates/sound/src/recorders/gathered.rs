@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::events::{Event, EventError, EventOptions, Events, Onset, events_of, hear};
+use crate::monitor::ListenMonitor;
 
 use super::align::align;
 use super::alignment::{Alignment, RecorderAlignment};
@@ -33,14 +34,16 @@ impl Gathered {
     /// Finds what the files of each recorder heard, aligns the recorders, and finds their events.
     ///
     /// # Errors
-    /// Those of [`find_events`](crate::find_events), or if the alignment has an option out of range.
+    /// Those of [`find_events`](crate::find_events), if the alignment has an option out of range, or if the monitor stops
+    /// the reading.
     pub(crate) fn new<P: AsRef<Path>>(
         files: &[Vec<P>],
         options: &EventOptions,
         alignment: &AlignmentOptions,
+        monitor: &ListenMonitor,
     ) -> Result<Gathered, EventError> {
         alignment.validate()?;
-        let (channels, onsets) = hear(files.iter().flatten(), options)?;
+        let (channels, onsets) = hear(files.iter().flatten(), options, monitor)?;
         // Each file has a first channel.
         let mut owners = files.iter().enumerate().flat_map(|(recorder, files)| files.iter().map(move |_| recorder));
         let mut owner = 0;

@@ -7,5 +7,6 @@ mod hostile;
 mod recorders;
 mod room;
 mod survey;
+mod watched;
 mod wav;
 mod write;
