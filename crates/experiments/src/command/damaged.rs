@@ -12,7 +12,7 @@ use tdoa::{CalibrateError, CalibrateOptions, Pseudoranges, calibrate};
 
 use super::book::Rows;
 use super::common::{Common, thread_seconds};
-use super::recording::{Recording, open_all};
+use super::recording::{Measured, Recording, open_all};
 use super::statistics::{mean, short};
 use super::table::Table;
 use crate::quantile::{median, quantile};
@@ -106,10 +106,10 @@ const SAME: f64 = 0.1;
 
 pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     if arguments.dimensions == 3 {
-        let recordings = open_all::<3>(&arguments.recordings)?;
+        let recordings = open_all::<3>(&arguments.recordings, Measured::Pseudoranges)?;
         return compared(arguments, &recordings, ranks).and_then(|summary| finish(arguments, summary, None));
     }
-    let recordings = open_all::<2>(&arguments.recordings)?;
+    let recordings = open_all::<2>(&arguments.recordings, Measured::Pseudoranges)?;
     let summary = compared(arguments, &recordings, ranks)?;
     let common = &arguments.common;
     let all: Vec<(&Recording<2>, u64)> =

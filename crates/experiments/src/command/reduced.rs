@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use crate::quantile::median;
 use crate::trials::reduced::{FOLD, Known, ReducedTrial, SAME, reduced_trial};
+use tdoa::Emissions;
 use tdoa::minimal::MinimalError;
 
 use super::book::Rows;
 use super::common::{Common, Size, thread_seconds};
-use super::recording::{Recording, open_all};
+use super::recording::{Measured, Recording, open_all};
 use super::statistics::{mean, short};
 use super::table::Table;
 use cli::{Failure, output};
@@ -19,10 +20,16 @@ use hc::ranks::Ranks;
 /// exactly and compares all candidates with the oracle: least squares from the true positions.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Folders with pseudoranges_m.csv and receivers_gt.csv; named by their last part in the
+    /// Folders with pseudoranges_m.csv (or ranges_m.csv) and receivers_gt.csv; named by their last part in the
     /// tables, by their last two where that is the same for several.
     #[arg(long, required = true, value_delimiter = ',')]
     recordings: Vec<PathBuf>,
+    /// Solves ranges, of ranges_m.csv, which have no offsets.
+    #[arg(long)]
+    ranges: bool,
+    /// Solves ranges that have one unknown constant.
+    #[arg(long, conflicts_with = "ranges")]
+    constant: bool,
     /// The configurations; a recording with fewer receivers is left out. Times are those of all threads with
     /// --threads 1 alone.
     #[arg(long, default_value = "7r/5s,10r/4s,6r/6s", value_delimiter = ',')]
@@ -43,7 +50,7 @@ const NEAR: f64 = 0.25;
 
 const HEADER: &str = "configuration,recording,bound,seed,clean,refused,special,complex,lost,candidates,oracle_residual,oracle_exact,oracle_rms,nearest_rms,\
                       best_rms,size,distance_raw,distance,best_is_oracle,cheaper,distance_near,beyond,tenth,control,\
-                      processor_seconds";
+                      away,processor_seconds";
 
 pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     if !(arguments.bound > 0.0 && arguments.bound.is_finite()) {
@@ -52,8 +59,13 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if arguments.instances == 0 {
         return Err(Failure::Unusable("--instances must be at least 1".into()));
     }
-    let recordings = open_all::<3>(&arguments.recordings)?;
-    let known: Vec<Known> = recordings.iter().map(|r| Known::new(&r.measured, &r.truth)).collect();
+    let (table, emissions) = match (arguments.ranges, arguments.constant) {
+        (true, _) => (Measured::Ranges, Emissions::Known),
+        (_, true) => (Measured::Ranges, Emissions::Constant),
+        _ => (Measured::Pseudoranges, Emissions::Unknown),
+    };
+    let recordings = open_all::<3>(&arguments.recordings, table)?;
+    let known: Vec<Known> = recordings.iter().map(|r| Known::new(&r.measured, emissions, &r.truth)).collect();
     let (mut trials, mut groups) = (Vec::new(), Vec::new());
     for &size in &arguments.configuration {
         let first = trials.len();
@@ -77,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let Some(rows) = rows else { return Ok(()) };
     let mut summary = String::from(
         "configuration,tried,refused,special,lost,candidates_mean,with_candidates,oracle_exact,exact_found,found,nearly_real,fold,tenth,control,\
-         unexplained,others_only,best_is_oracle,cheaper,oracle_near_truth,candidate_near_truth,oracle_rms_median,nearest_rms_median,best_rms_median,\
+         away,unexplained,others_only,best_is_oracle,cheaper,oracle_near_truth,candidate_near_truth,oracle_rms_median,nearest_rms_median,best_rms_median,\
          oracle_residual_median,processor_seconds_median\n",
     );
     for (size, range) in groups {
@@ -94,12 +106,12 @@ fn known_receivers(recording: &Recording<3>) -> usize {
 
 fn row(size: Size, known: &Known, seed: u64, bound: f64) -> Result<String, Failure> {
     let Some(part) = known.part(size.receivers, size.transmitters, bound, seed) else {
-        return Ok(format!("false{}", ",".repeat(20)));
+        return Ok(format!("false{}", ",".repeat(21)));
     };
     let started = thread_seconds();
     let trial = reduced_trial(&part).map_err(Failure::unusable)?;
     let seconds = thread_seconds() - started;
-    let ReducedTrial { complex, lost, candidates, oracle_exact, best_is_oracle, cheaper, .. } = trial;
+    let ReducedTrial { complex, lost, candidates, oracle_exact, best_is_oracle, cheaper, is_away, .. } = trial;
     let special = matches!(
         trial.refused,
         Some(MinimalError::SpecialPosition | MinimalError::InOnePlane | MinimalError::TransmittersInOnePlane { .. })
@@ -107,7 +119,7 @@ fn row(size: Size, known: &Known, seed: u64, bound: f64) -> Result<String, Failu
     let some = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.2e}"));
     Ok(format!(
         "true,{},{special},{complex},{lost},{candidates},{:.2e},{oracle_exact},{:.5},{:.5},{:.5},{:.5},{:.2e},{:.2e},{best_is_oracle},{cheaper},{},{},{},{},\
-         {seconds:.3}",
+         {is_away},{seconds:.3}",
         trial.refused.is_some(),
         trial.oracle_residual,
         trial.oracle_rms,
@@ -136,9 +148,10 @@ fn sums(rows: &Rows, range: Range<usize>) -> Vec<String> {
     let within = |column: &str, limit: f64| of(column).into_iter().map(|value| value <= limit).collect::<Vec<bool>>();
     let both = |a: &[bool], b: &[bool]| a.iter().zip(b).map(|(a, b)| *a && *b).collect::<Vec<bool>>();
     let (exact, found) = (is("oracle_exact"), within("distance", SAME));
-    // Each of the reasons is looked for only where the oracle is not among the candidates.
+    // The others are looked for only where the oracle is not among the candidates.
+    let away = both(&is("away"), &found.iter().map(|found| !found).collect::<Vec<bool>>());
     let reasons =
-        [within("distance_near", SAME), within("beyond", FOLD), within("tenth", SAME), within("control", SAME)];
+        [within("distance_near", SAME), within("beyond", FOLD), within("tenth", SAME), within("control", SAME), away];
     // A network that fits exactly has to be among them, whatever else is found.
     let unexplained: Vec<bool> =
         (0..found.len()).map(|k| !found[k] && (exact[k] || !reasons.iter().any(|all| all[k]))).collect();

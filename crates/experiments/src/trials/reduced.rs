@@ -1,6 +1,7 @@
 //! Trials on recordings reduced to the smallest sizes in space: the exact candidates beside the oracle,
 //! which is least squares from the true positions on the same measurements.
 
+use crate::quantile::median;
 use crate::trials::calibration::apart;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -8,8 +9,8 @@ use rand_pcg::Pcg64Mcg;
 use tdoa::accuracy::position_error;
 use tdoa::loss::Loss;
 use tdoa::minimal::{Candidate, MinimalError, MinimalOptions, MinimalSolution, adjust, spatial};
-use tdoa::multilateration::{Located, Sight, transmitter};
-use tdoa::{Network, Pseudoranges};
+use tdoa::multilateration::{Located, Sight, receiver, transmitter};
+use tdoa::{Emissions, Network, Pseudoranges};
 
 /// The loss by which events are located from the true receivers: Cauchy's, in metres.
 const LOSS: Loss = Loss { nu: 1.0, scale: 0.05 };
@@ -50,12 +51,16 @@ const BEYOND: [f64; 3] = [1e-3, 1e-4, 1e-5];
 /// size.
 pub const FOLD: f64 = 0.1;
 
+/// How many times as large as the truth a network is whose nodes move away.
+const AWAY: f64 = 10.0;
+
 /// The share of the oracle's residuals that is left with less noise.
 const TENTH: f64 = 0.1;
 
 /// A recording, and where its events were as the true receivers tell.
 pub struct Known {
     measured: Pseudoranges,
+    emissions: Emissions,
     receivers: Vec<Option<[f64; 3]>>,
     events: Vec<Option<Located<3>>>,
 }
@@ -64,21 +69,39 @@ pub struct Known {
 pub struct Part {
     /// Its measurements.
     pub measured: Pseudoranges,
+    /// What is known of their offsets.
+    pub emissions: Emissions,
     /// The true receivers, and the events as these tell.
     pub truth: Network<3>,
 }
 
 impl Known {
-    /// Locates every event from the true receivers.
-    pub fn new(measured: &Pseudoranges, receivers: &[Option<[f64; 3]>]) -> Known {
-        let sights = |j: usize| -> Vec<Sight<3>> {
+    /// Locates every event from the true receivers. A constant of all is the median of the offsets that the events
+    /// have each by itself.
+    pub fn new(measured: &Pseudoranges, emissions: Emissions, receivers: &[Option<[f64; 3]>]) -> Known {
+        let sights = |j: usize, offset: f64| -> Vec<Sight<3>> {
             let heard = receivers.iter().enumerate();
-            heard
-                .filter_map(|(i, r)| Some(Sight { position: (*r)?, length: measured.get(i, j)?, precision: 1.0 }))
-                .collect()
+            let sight = |(i, r): (usize, &Option<[f64; 3]>)| {
+                Some(Sight { position: (*r)?, length: measured.get(i, j)? - offset, precision: 1.0 })
+            };
+            heard.filter_map(sight).collect()
         };
-        let events = (0..measured.transmitters()).map(|j| transmitter(&sights(j), &LOSS)).collect();
-        Known { measured: measured.clone(), receivers: receivers.to_vec(), events }
+        let all = 0..measured.transmitters();
+        let free: Vec<_> = all.clone().map(|j| transmitter(&sights(j, 0.0), &LOSS)).collect();
+        // With a known offset the two roles are the same.
+        let with = |offset: f64| -> Vec<Option<Located<3>>> {
+            let at = |j: usize| Some(Located { offset, ..receiver(&sights(j, offset), &LOSS)? });
+            all.clone().map(at).collect()
+        };
+        let events = match emissions {
+            Emissions::Known => with(0.0),
+            Emissions::Constant => {
+                let offsets: Vec<f64> = free.iter().flatten().map(|event| event.offset).collect();
+                with(median(&offsets))
+            }
+            _ => free,
+        };
+        Known { measured: measured.clone(), emissions, receivers: receivers.to_vec(), events }
     }
 
     /// Whether a measurement is there and within `bound` metres of the truth.
@@ -122,7 +145,8 @@ impl Known {
                 events.iter().map(|event| event.position).collect(),
                 events.iter().map(|event| event.offset).collect(),
             );
-            return Some(Part { measured: self.measured.select(&rows, &columns), truth });
+            let measured = self.measured.select(&rows, &columns);
+            return Some(Part { measured, emissions: self.emissions, truth });
         }
         None
     }
@@ -161,11 +185,14 @@ pub struct ReducedTrial {
     pub best_is_oracle: bool,
     /// Whether another network has a smaller residual than the oracle's.
     pub cheaper: bool,
+    /// Whether the oracle is ten times as large as the true network, or more: a node moves away, and least squares has no
+    /// minimum.
+    pub is_away: bool,
     /// Where the oracle is not among them, and the size takes paths: the relative distance with roots that are
     /// nearly real.
     pub distance_near: Option<f64>,
-    /// Where the oracle does not fit as many measurements as unknowns exactly, and is not among the candidates:
-    /// relative distance of the second nearest candidate, with a thousandth of the oracle's residuals reversed,
+    /// Where the oracle does not fit exactly, and is not among the candidates of its own network either, if that has
+    /// more measurements than unknowns: relative distance of the second nearest candidate, with a thousandth of the oracle's residuals reversed,
     /// or less where that is too far.
     pub beyond: Option<f64>,
     /// Where it is not among them otherwise: the relative distance with a tenth of its residuals, which has the
@@ -189,10 +216,17 @@ impl ReducedTrial {
 /// # Errors
 /// If the size is none that is solved in space, two nodes coincide, or the truth is none of the part's size.
 pub fn reduced_trial(part: &Part) -> Result<ReducedTrial, MinimalError> {
-    let Part { measured, truth } = part;
+    let Part { measured, emissions, truth } = part;
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let spare = (m * n + 6).saturating_sub(3 * m + 4 * n);
-    let (mut judged, mut options) = (MinimalOptions::default(), MinimalOptions::default());
+    let offsets = match emissions {
+        Emissions::Known => 0,
+        Emissions::Constant => 1,
+        _ => n,
+    };
+    let spare = (m * n + 6).saturating_sub(3 * (m + n) + offsets);
+    let mut judged = MinimalOptions::default();
+    judged.emissions = *emissions;
+    let mut options = judged.clone();
     judged.tolerance = TOLERANCE;
     options.tolerance = if spare < DIRECT { ALL } else { TOLERANCE };
     let oracle = adjust(measured, truth, &judged)?;
@@ -220,6 +254,7 @@ pub fn reduced_trial(part: &Part) -> Result<ReducedTrial, MinimalError> {
         distance: from(&refined),
         best_is_oracle: best.is_some_and(|c| from(std::slice::from_ref(c)) <= SAME),
         cheaper: spare > 0 && refined.iter().any(cheaper),
+        is_away: oracle.network.size() > AWAY * truth.size(),
         distance_near: None,
         beyond: None,
         tenth: None,
@@ -242,7 +277,13 @@ pub fn reduced_trial(part: &Part) -> Result<ReducedTrial, MinimalError> {
         let Ok(other) = Pseudoranges::new(m, n, values) else { return [f64::INFINITY; 2] };
         distances(&self::refined(&other, spatial::solve(&other, &options).ok().as_ref(), &judged), &oracle)
     };
-    if spare == 0 && !trial.oracle_exact {
+    if spare > 0 || trial.oracle_exact {
+        trial.tenth = Some(with(TENTH)[0]);
+        trial.control = Some(with(0.0)[0]);
+    }
+    // Measurements may have to fulfil an equation of their own, as of ranges 5r/5s; a spare one then does not tell
+    // roots apart.
+    if !trial.oracle_exact && spare < DIRECT && trial.control.is_none_or(|distance| distance > SAME) {
         let mut second = f64::INFINITY;
         for share in BEYOND {
             second = with(-share)[1];
@@ -251,9 +292,6 @@ pub fn reduced_trial(part: &Part) -> Result<ReducedTrial, MinimalError> {
             }
         }
         trial.beyond = Some(second);
-    } else {
-        trial.tenth = Some(with(TENTH)[0]);
-        trial.control = Some(with(0.0)[0]);
     }
     Ok(trial)
 }
@@ -297,7 +335,7 @@ fn from_truth(network: &Network<3>, truth: &Network<3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{Known, SAME, reduced_trial};
-    use tdoa::{Layout, Pseudoranges, SimulateOptions, Simulation, simulate};
+    use tdoa::{Emissions, Layout, Pseudoranges, SimulateOptions, Simulation, simulate};
 
     fn room(noise: f64) -> Simulation<3> {
         let mut options = SimulateOptions::new();
@@ -313,7 +351,7 @@ mod tests {
         }
         let measured = Pseudoranges::new(10, 12, values).unwrap();
         let receivers: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
-        Known::new(&measured, &receivers)
+        Known::new(&measured, Emissions::Unknown, &receivers)
     }
 
     #[test]
@@ -339,6 +377,31 @@ mod tests {
             assert!(trial.found() && trial.distance <= SAME && trial.refused.is_none(), "{trial:?}");
             assert!(trial.best_is_oracle && !trial.cheaper && !trial.oracle_exact, "{trial:?}");
             assert!(trial.oracle_rms < 0.01 && (trial.best_rms - trial.oracle_rms).abs() < 1e-4, "{trial:?}");
+        }
+    }
+
+    /// Counts of Kuang, Burgess, Torstensson and Astrom 2013 (38 and 42), and of `families/4r7s_constant.toml`.
+    #[test]
+    fn smallest_sizes_of_ranges_fit_exactly() {
+        use Emissions::{Constant, Known as Ranges};
+        for (emissions, receivers, transmitters, roots) in
+            [(Ranges, 4, 6, 38), (Ranges, 6, 4, 38), (Constant, 4, 7, 388)]
+        {
+            let mut options = SimulateOptions::new();
+            (options.receivers, options.transmitters, options.seed) = (8, 16, 4);
+            (options.layout, options.noise) = (Layout::Normal, 1e-5);
+            options.emissions = emissions;
+            let room: Simulation<3> = simulate(&options).unwrap();
+            let truth: Vec<_> = room.network.receivers.iter().copied().map(Some).collect();
+            let part =
+                Known::new(&room.pseudoranges, emissions, &truth).part(receivers, transmitters, 0.01, 1).unwrap();
+            assert!(
+                part.truth.rms(&part.measured) < 1e-4
+                    && !part.truth.offsets.iter().any(|o| *o != part.truth.offsets[0])
+            );
+            let trial = reduced_trial(&part).unwrap();
+            assert!(trial.oracle_exact && trial.found() && trial.lost == 0 && !trial.is_away, "{trial:?}");
+            assert_eq!(trial.complex, roots);
         }
     }
 
