@@ -214,7 +214,7 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
     let columns =
         ["configuration", "tried", "refused", "oracle_exact", "found", "nearly_real", "fold", "control", "unexplained"];
     text += &lines(results, &["reduced-ranges"], |row| cells(row, &columns))?;
-    text += "\nThe same ranges as they are, without offsets, and below with one unknown constant; measurements within 0.1 m. Those of 5r/5s \
+    text += "\nThe same ranges as they are, without offsets or with one unknown constant; measurements within 0.1 m. Those of 5r/5s \
              without a constant have to fulfil an equation of their own, so that no oracle fits exactly. \"Away\" counts oracles that are ten \
              times as large as the anchors and the tag, because a node moves away without end.\n\n";
     text += &head(&[
@@ -254,7 +254,8 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
         all.extend(cells(row, &columns)?);
         Ok(all)
     };
-    Ok(text + &lines(results, &["smallest-ranges", "smallest-constants"], small)?)
+    text += &lines(results, &["smallest-ranges"], |row| small(row, ""))?;
+    Ok(text + &lines(results, &["smallest-constants"], |row| small(row, ", constant"))?)
 }
 
 /// Parts whose oracle does not fit exactly, and in how many of them it is found.
