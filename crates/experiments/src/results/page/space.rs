@@ -236,9 +236,9 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
         "oracle, m (median)",
         "s",
     ]);
-    let small = |row: &Row<'_>| {
-        let mut all =
-            cells(row, &["configuration", "tried", "candidates_mean", "lost", "oracle_exact", "exact_found"])?;
+    let small = |row: &Row<'_>, clocks: &str| {
+        let mut all = vec![row.get("configuration")?.to_owned() + clocks];
+        all.extend(cells(row, &["tried", "candidates_mean", "lost", "oracle_exact", "exact_found"])?);
         all.extend(inexact(row)?);
         let columns = [
             "nearly_real",
