@@ -621,6 +621,9 @@ def test_recordings_are_heard_and_calibrated(tmp_path):
     assert not any(warning.startswith("channel ") for warning in heard.warnings)
     found = tdoa.calibrate(heard).compared(microphones)
     assert found.dimensions == 3 and found.truth["receiver_rms"] < 3e-3, found.truth
+    # The same sounds, each by itself.
+    located = found.locate(heard)
+    assert np.allclose([place.position for place in located], found.transmitters, atol=5e-3) and all(place.unique for place in located)
     # Two recorders that were started apart, from files.
     _native = hc._native
     parts = [tmp_path / "left.wav", tmp_path / "right.wav"]
@@ -631,6 +634,7 @@ def test_recordings_are_heard_and_calibrated(tmp_path):
     assert abs(apart.data["alignment"]["recorders"][1]["start"] - 0.25) < 0.02
     found = tdoa.calibrate(apart).compared(microphones)
     assert found.truth["receiver_rms"] < 2e-2 and [clock.recorder for clock in found.clocks] == ["left", "right"], found
+    assert all(place.unique for place in found.locate(apart))
     pandas = pytest.importorskip("pandas")
     table = heard.to_dataframe()
     assert isinstance(table, pandas.DataFrame) and len(table) == 128 and table.sigma.max() < 1e-4

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use cli::files::Files;
 use tdoa::html::page;
 
-use crate::recordings::{RecordingArguments, Recordings, SpeedArguments, sections};
+use crate::recordings::{RecordingArguments, sections};
 use crate::{Failure, output};
 
 /// Finds the claps, chirps or other short sounds in recordings, and when each microphone hears them.
@@ -19,8 +19,6 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     recording: RecordingArguments,
-    #[command(flatten)]
-    air: SpeedArguments,
     /// Speed of sound in metres a second; 343 if neither it nor the temperature is given.
     #[arg(long, allow_negative_numbers = true, value_name = "M/S")]
     speed: Option<f64>,
@@ -48,11 +46,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let further = arguments.recording.further_files();
     let files = arguments.files.iter().chain(&further).fold(Files::new(), |files, file| files.reads(Some(file)));
     arguments.outputs().into_iter().fold(files, |files, (option, path)| files.writes(option, path)).check()?;
-    let speed = arguments.air.speed(arguments.speed)?;
-    let options = arguments.recording.options(speed.metres_per_second, arguments.html.is_some())?;
-    let recorders = arguments.recording.recorders(&arguments.files);
-    let found =
-        crate::on_threads(arguments.threads, || Recordings::listen(recorders, &options, speed.metres_per_second))??;
+    let speed = arguments.recording.speed(arguments.speed)?.metres_per_second;
+    let found = arguments.recording.listen(&arguments.files, speed, arguments.html.is_some(), arguments.threads)?;
     if let Some(path) = &arguments.output {
         output::text(path, &found.heard.list())?;
     }

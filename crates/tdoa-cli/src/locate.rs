@@ -1,5 +1,8 @@
 //! `tdoa locate`.
 
+mod arguments;
+mod heard;
+
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -11,27 +14,7 @@ use tdoa::{Calibration, LocateError, LocatedEvent, Locator, Pseudoranges};
 
 use crate::{Failure, input, output};
 
-/// Locates new transmitters in a network that is calibrated: a line of JSON each, as they come.
-///
-/// Receivers are known by their names. Each transmitter is located by itself, with its covariance, the receivers that do not
-/// agree, and other places that explain the measurements about as well (`others`); `unique` says that there is none.
-/// Values are those that the network would have been calibrated with: by the same clocks, and at the same speed.
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// The network: what `tdoa calibrate --json` has written.
-    network: PathBuf,
-    /// The measurements, in any form that `tdoa calibrate` reads; - for standard input. A list from there is read as it
-    /// comes: a transmitter is located when the next one begins.
-    file: PathBuf,
-    #[command(flatten)]
-    input: crate::units::InputArguments,
-    /// Standard deviation of the measurements in metres; that of the calibration if not given.
-    #[arg(long, allow_negative_numbers = true)]
-    sigma: Option<f64>,
-    /// Threads; accepted everywhere, locating needs only one.
-    #[arg(long)]
-    threads: Option<usize>,
-}
+pub(crate) use arguments::Arguments;
 
 /// What tells the networks that were written apart.
 #[derive(Deserialize)]
@@ -40,6 +23,8 @@ struct Header {
     unfinished: bool,
     #[serde(default = "plane")]
     dimensions: usize,
+    /// Unit of its measurements, where that was not the metre.
+    units: Option<heard::Unit>,
 }
 
 fn plane() -> usize {
@@ -47,7 +32,9 @@ fn plane() -> usize {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    Files::new().reads(Some(&arguments.network)).reads(Some(&arguments.file)).check()?;
+    let further = arguments.recording.further_files();
+    let files = arguments.files.iter().chain(&further).fold(Files::new(), |files, file| files.reads(Some(file)));
+    files.reads(Some(&arguments.network)).check()?;
     let network = text(&arguments.network)?;
     let header: Header = parse(&network, &arguments.network)?;
     if header.unfinished {
@@ -55,8 +42,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::in_file(&arguments.network, problem));
     }
     crate::on_threads(arguments.threads, || match header.dimensions {
-        3 => locate::<3>(arguments, &parse(&network, &arguments.network)?),
-        _ => locate::<2>(arguments, &parse(&network, &arguments.network)?),
+        3 => locate::<3>(arguments, &parse(&network, &arguments.network)?, header.units.as_ref()),
+        _ => locate::<2>(arguments, &parse(&network, &arguments.network)?, header.units.as_ref()),
     })?
 }
 
@@ -70,7 +57,11 @@ fn parse<'a, T: Deserialize<'a>>(text: &'a str, path: &Path) -> Result<T, Failur
 }
 
 /// Locates all transmitters of the measurements.
-fn locate<const D: usize>(arguments: &Arguments, network: &Calibration<D>) -> Result<(), Failure>
+fn locate<const D: usize>(
+    arguments: &Arguments,
+    network: &Calibration<D>,
+    units: Option<&heard::Unit>,
+) -> Result<(), Failure>
 where
     LocatedEvent<D>: Serialize,
 {
@@ -81,15 +72,15 @@ where
     for note in locator.notes() {
         eprintln!("note: {note}");
     }
+    let file = arguments.files.first().map_or(Path::new("-"), PathBuf::as_path);
+    if arguments.recording.are_of(&arguments.files)? {
+        return heard::locate(arguments, network, units, &locator);
+    }
     let options = arguments.input.options(network.speed.is_some())?;
     let mut tell = |measured: &Pseudoranges| -> Result<(), Failure> {
         locator.locate(measured).map_err(Failure::unusable)?.iter().try_for_each(output::json_line)
     };
-    if is_standard(&arguments.file) {
-        as_it_comes(&arguments.file, &options, &mut tell)
-    } else {
-        tell(&input::measurements(&arguments.file, options)?)
-    }
+    if is_standard(file) { as_it_comes(file, &options, &mut tell) } else { tell(&input::measurements(file, options)?) }
 }
 
 /// Most of a line of a list, bytes.

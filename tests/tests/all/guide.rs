@@ -283,7 +283,7 @@ fn the_tracker_and_the_checks() {
 fn from_recordings_to_a_network() {
     let folder = tempfile::tempdir().expect("folder");
     let printed = run_page("docs/guide/recordings.md", folder.path());
-    assert_eq!(printed.len(), 8);
+    assert_eq!(printed.len(), 10);
     let rms = |text: &str| -> f64 {
         let line = text.lines().find(|line| line.starts_with("against the truth")).expect("a comparison");
         let (length, unit) =
@@ -297,6 +297,8 @@ fn from_recordings_to_a_network() {
         assert!(rms(text) < most && text.contains("; unique"), "{text}");
     }
     assert!(folder.path().join("room.html").exists());
+    // Twenty-five claps of which twenty made the network.
+    assert!(printed[9].1.lines().filter(|line| line.contains("\"unique\":true")).count() == 25, "{}", printed[9].1);
 }
 
 #[test]

@@ -10,6 +10,11 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8 path")
 }
 
+/// How far a line of JSON is from these coordinates.
+fn off(line: &str, truth: &[f64]) -> f64 {
+    position(line).iter().zip(truth).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+}
+
 /// Columns of a CSV matrix with these numbers, the first being 0, as a matrix.
 fn columns(table: &str, numbers: std::ops::Range<usize>) -> String {
     let row = |line: &str| {
@@ -54,7 +59,7 @@ fn new_transmitters_are_located_in_a_calibrated_network() {
     let transmitters = std::fs::read_to_string(folder.join("transmitters.csv")).expect("truth");
     for (line, truth) in lines.lines().zip(transmitters.lines().skip(21)) {
         let truth: Vec<f64> = truth.split(',').skip(1).map(|x| x.parse().expect("a number")).collect();
-        let off = position(line).iter().zip(&truth).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();
+        let off = off(line, &truth);
         // Far from all receivers a centimetre of noise is some more of place.
         assert!(off < 0.15 && line.contains("\"unique\":true"), "{off}: {line}");
     }
@@ -108,4 +113,50 @@ fn events_are_located_as_they_come() {
     drop(input);
     assert_eq!(output.lines().count(), 2);
     assert!(child.wait().expect("the program ends").success());
+}
+
+/// New sounds of the same microphones, in a recording of another name.
+#[test]
+fn new_sounds_are_located() {
+    let folder = end_to_end::Folder::empty();
+    let folder = folder.path();
+    let network = folder.join("network.json");
+    let made = |name: &str, receivers: &str, transmitters: &str| {
+        let output = folder.join(name);
+        let more = ["--receivers", receivers, "--transmitters", transmitters, "--seed", "3", "--output", text(&output)];
+        assert!(run("tdoa", &[&["simulate", "--sound"], &more[..]].concat()).status.success());
+        (output.join("recording.wav"), output.join("receivers.csv"), output.join("transmitters.csv"))
+    };
+    let (first, truth, _) = made("first", "9", "16");
+    let calibrate =
+        ["calibrate", text(&first), "--temperature", "20", "--truth", text(&truth), "--json", text(&network)];
+    assert!(run("tdoa", &calibrate).status.success());
+
+    // Receivers are drawn first.
+    let (second, same, transmitters) = made("second", "9", "20");
+    assert_eq!(std::fs::read(truth).expect("truth"), std::fs::read(same).expect("truth"));
+    let later = folder.join("later.wav");
+    std::fs::rename(second, &later).expect("renamed");
+    let output = run("tdoa", &["locate", text(&network), text(&later)]);
+    let (lines, said) =
+        (String::from_utf8(output.stdout).expect("text"), String::from_utf8(output.stderr).expect("text"));
+    assert!(output.status.success() && lines.lines().count() == 20, "{said}");
+    assert!(said.contains("343.2 m/s, as the network was calibrated") && said.contains("by their numbers"), "{said}");
+    let transmitters = std::fs::read_to_string(transmitters).expect("truth");
+    let mut moments = Vec::new();
+    for (line, truth) in lines.lines().zip(transmitters.lines().skip(1)) {
+        let truth: Vec<f64> = truth.split(',').skip(1).map(|x| x.parse().expect("a number")).collect();
+        // Receivers are within 3 mm, and sounds at the edge of the room less well.
+        assert!(off(line, &truth) < 0.02, "{}: {line}", off(line, &truth));
+        let line: serde_json::Value = serde_json::from_str(line).expect("JSON");
+        moments.push(line["seconds"].as_f64().expect("seconds"));
+    }
+    assert!(moments.is_sorted() && moments[0] > 0.0);
+
+    // Another number of channels, and a table beside a recording.
+    let (other, ..) = made("other", "11", "3");
+    for files in [vec![text(&other)], vec![text(&later), text(&network)]] {
+        let refused = run("tdoa", &[&["locate", text(&network)], &files[..]].concat());
+        assert_eq!(refused.status.code(), Some(2), "{files:?}");
+    }
 }

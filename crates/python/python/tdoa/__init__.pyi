@@ -206,7 +206,7 @@ class Calibration:
     ) -> Calibration: ...
     def locate(
         self,
-        pseudoranges: _Table,
+        pseudoranges: _Table | Heard,
         *,
         sigma: ArrayLike | None = None,
         speed: float | None = None,

@@ -9,6 +9,7 @@ import numpy as np
 from hc import InputError, _native
 
 from ._clocks import RecorderClock, recorders_of
+from ._listen import heard
 from ._place import Place
 from ._tables import real_matrix, table
 
@@ -242,9 +243,9 @@ class Calibration:
 
         Parameters
         ----------
-        pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges
-            What the receivers measure of them, as in `calibrate`: by the same clocks and at the same assumed speed. Receivers are
-            known by their names, or by their order where they have none here.
+        pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges, or Heard
+            What the receivers measure of them, as in `calibrate`: by the same clocks and at the same assumed speed; or what was
+            heard in recordings, by `listen`. Receivers are known by their names, or by their order where they have none here.
         sigma : float or array_like of shape (m, n), optional
             Standard deviation of the measurements in metres; that of the calibration by default.
         speed : float, optional
@@ -275,6 +276,7 @@ class Calibration:
         >>> len(places), places[0].unique
         (10, True)
         """
+        pseudoranges, recorders, _ = heard(pseudoranges, recorders, None)
         given, single, _ = table(pseudoranges, names, sigma, speed)
         count = len(given["values"])
         receivers = given["receivers"] or [f"r{i + 1}" for i in range(count)]

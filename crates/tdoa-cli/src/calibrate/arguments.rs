@@ -7,7 +7,7 @@ use tdoa::CalibrateOptions;
 use crate::Failure;
 use crate::clocks::{EmissionArguments, ReceiverClockArguments};
 use crate::provenance::{named, said};
-use crate::recordings::{RecordingArguments, Recordings, SpeedArguments, is_recording};
+use crate::recordings::{RecordingArguments, Recordings};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
@@ -34,8 +34,6 @@ pub(crate) struct Arguments {
     pub(super) input: crate::units::InputArguments,
     #[command(flatten, next_help_heading = "Recordings")]
     pub(super) recording: RecordingArguments,
-    #[command(flatten, next_help_heading = "Recordings")]
-    pub(super) air: SpeedArguments,
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) sigma: Option<f64>,
@@ -158,34 +156,18 @@ impl Arguments {
 
     /// What was heard in the recordings, if these were given in place of a table.
     pub(super) fn recordings(&self) -> Result<Option<Recordings>, Failure> {
-        let count = self.files.iter().filter(|file| is_recording(file)).count();
-        if count == 0 {
-            if let [_, second, ..] = &self.files[..] {
-                let problem = "a table is calibrated by itself; several files are for recordings (WAV or FLAC)";
-                return Err(Failure::Unusable(format!("{}: {problem}", second.display())));
-            }
-            if self.recording.are_given() || self.air.is_given() {
-                let problem = "is no recording (WAV or FLAC), and the options for these have no meaning for a table";
-                return Err(Failure::in_file(self.file(), problem));
-            }
+        if !self.recording.are_of(&self.files)? {
             return Ok(None);
         }
-        if let Some(other) = self.files.iter().find(|file| !is_recording(file)) {
-            return Err(Failure::in_file(other, "is no recording (WAV or FLAC), as the other files are"));
-        }
-        let speed = self.air.speed(self.input.speed_of_recordings()?)?;
+        let speed = self.recording.speed(self.input.speed_of_recordings()?)?;
         if !speed.is_said && !self.estimate_speed {
             eprintln!(
                 "note: the speed of sound is taken to be {} m/s, that of 20 degrees; --temperature or --speed says it better",
                 speed.metres_per_second
             );
         }
-        let options = self.recording.options(speed.metres_per_second, self.html.is_some())?;
-        let recorders = self.recording.recorders(&self.files);
-        let found =
-            crate::on_threads(self.threads, || Recordings::listen(recorders, &options, speed.metres_per_second))??;
-        eprintln!("note: {}", found.counts());
-        found.warnings().iter().for_each(|warning| eprintln!("note: {warning}"));
+        let found = self.recording.listen(&self.files, speed.metres_per_second, self.html.is_some(), self.threads)?;
+        found.tell();
         Ok(Some(found))
     }
 
@@ -219,11 +201,8 @@ impl Arguments {
             named("agreeing", Some(self.agreeing)),
         ];
         let own = own.into_iter().chain(self.sending.settings()).chain(self.clocks.settings()).flatten();
-        let of_recordings = self
-            .files
-            .iter()
-            .any(|file| is_recording(file))
-            .then(|| self.recording.settings().into_iter().chain(named("temperature", self.air.temperature())));
+        let are_recordings = self.recording.are_of(&self.files).unwrap_or_default();
+        let of_recordings = are_recordings.then(|| self.recording.settings());
         self.input.settings().into_iter().chain(of_recordings.into_iter().flatten()).chain(own).collect()
     }
 }

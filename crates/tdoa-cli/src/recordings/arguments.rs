@@ -1,9 +1,11 @@
 //! The options of how recordings are listened to.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use sound::{ListenOptions, Signal};
 
+use super::heard::Recordings;
+use super::speed::{Speed, SpeedArguments};
 use crate::Failure;
 use crate::provenance::named;
 
@@ -38,11 +40,59 @@ pub(crate) struct RecordingArguments {
     /// How many channels must hear a sound.
     #[arg(long, value_name = "CHANNELS", default_value_t = ListenOptions::default().events.least_channels)]
     least_channels: usize,
+    #[command(flatten)]
+    air: SpeedArguments,
+}
+
+/// Whether a file is a recording, by its name or by how it begins.
+fn is_recording(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let named = ending.is_some_and(|ending| ["wav", "wave", "bwf", "rf64", "flac"].contains(&ending.as_str()));
+    named || (path.is_file() && sound::Recording::open(path).is_ok())
 }
 
 impl RecordingArguments {
+    /// Whether the files are recordings, or one is a table.
+    ///
+    /// # Errors
+    /// If one is a recording and another is not, if there are several tables, or a table with options of recordings.
+    pub(crate) fn are_of(&self, files: &[PathBuf]) -> Result<bool, Failure> {
+        let (recordings, others): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(|file| is_recording(file));
+        match (&recordings[..], &others[..]) {
+            ([_, ..], []) => Ok(true),
+            ([_, ..], [other, ..]) => {
+                Err(Failure::in_file(other, "is no recording (WAV or FLAC), as the other files are"))
+            }
+            ([], [_, second, ..]) => {
+                let problem = "a table is taken by itself; several files are for recordings (WAV or FLAC)";
+                Err(Failure::in_file(second, problem))
+            }
+            ([], [table]) if self.are_given() || self.air.is_given() => {
+                let problem = "is no recording (WAV or FLAC), and the options for these have no meaning for a table";
+                Err(Failure::in_file(table, problem))
+            }
+            ([], _) => Ok(false),
+        }
+    }
+
+    /// The speed of sound that was `given`, or is that of the temperature, or the usual one.
+    pub(crate) fn speed(&self, given: Option<f64>) -> Result<Speed, Failure> {
+        self.air.speed(given)
+    }
+
+    /// Listens to the files at this speed of sound, with a progress bar; waveforms are kept if `keep`.
+    pub(crate) fn listen(
+        &self,
+        files: &[PathBuf],
+        speed: f64,
+        keep: bool,
+        threads: Option<usize>,
+    ) -> Result<Recordings, Failure> {
+        Recordings::listen(self.recorders(files), &self.options(speed, keep)?, speed, threads)
+    }
+
     /// Whether an option was given that is of recordings alone.
-    pub(crate) fn are_given(&self) -> bool {
+    fn are_given(&self) -> bool {
         let defaults = ListenOptions::default().events;
         self.apart
             || self.threshold.is_some()
@@ -62,7 +112,7 @@ impl RecordingArguments {
     }
 
     /// The files of each recorder.
-    pub(crate) fn recorders(&self, files: &[PathBuf]) -> Vec<Vec<PathBuf>> {
+    fn recorders(&self, files: &[PathBuf]) -> Vec<Vec<PathBuf>> {
         if self.apart {
             return files.iter().map(|file| vec![file.clone()]).collect();
         }
@@ -71,7 +121,7 @@ impl RecordingArguments {
     }
 
     /// How recordings are listened to, at this speed of sound, and whether waveforms are kept.
-    pub(crate) fn options(&self, speed: f64, keep: bool) -> Result<ListenOptions, Failure> {
+    fn options(&self, speed: f64, keep: bool) -> Result<ListenOptions, Failure> {
         let signal = match (&self.template, &self.chirp[..]) {
             (Some(path), _) => Signal::read(path).map_err(Failure::unusable)?,
             (None, []) => Signal::Unknown,
@@ -113,6 +163,7 @@ impl RecordingArguments {
             named("extent", Some(self.extent)),
             named("threshold", self.threshold),
             named("least-channels", Some(self.least_channels)),
+            named("temperature", self.air.temperature()),
         ]
         .into_iter()
         .flatten()

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use sound::{ChannelSurvey, Heard, ListenOptions, listen, survey};
+use sound::{ChannelSurvey, Heard, ListenError, ListenMonitor, ListenOptions, listen_watched, survey};
 use tdoa::Pseudoranges;
 use tdoa::read::{self, Units};
 
-use crate::Failure;
+use crate::{Failure, interrupt};
 
 /// What was heard in recordings.
 #[derive(Serialize)]
@@ -26,12 +26,34 @@ pub(crate) struct Recordings {
 }
 
 impl Recordings {
-    /// Listens to the files of each recorder.
-    pub(crate) fn listen(files: Vec<Vec<PathBuf>>, options: &ListenOptions, speed: f64) -> Result<Recordings, Failure> {
-        // What is wrong with a file is said before the work.
-        let survey = survey(files.iter().flatten()).map_err(Failure::unusable)?;
-        let heard = listen(&files, options).map_err(Failure::unusable)?;
+    /// Listens to the files of each recorder, with a progress bar; an interrupt ends it.
+    pub(super) fn listen(
+        files: Vec<Vec<PathBuf>>,
+        options: &ListenOptions,
+        speed: f64,
+        threads: Option<usize>,
+    ) -> Result<Recordings, Failure> {
+        let monitor = ListenMonitor::heeding(interrupt::watch()?);
+        let describe = || {
+            let progress = monitor.progress();
+            (progress.done, progress.total, "samples are read".to_string())
+        };
+        let (survey, heard) = cli::bar::while_shown(threads, describe, || {
+            // What is wrong with a file is said before the work.
+            let survey = survey(files.iter().flatten()).map_err(Failure::unusable)?;
+            let heard = listen_watched(&files, options, &monitor).map_err(|error| match error {
+                ListenError::Stopped => Failure::Interrupted,
+                error => Failure::unusable(error),
+            })?;
+            Ok((survey, heard))
+        })??;
         Ok(Recordings { survey, names: heard.names(), speed, heard, files })
+    }
+
+    /// Says what was heard, and what is wrong with it.
+    pub(crate) fn tell(&self) {
+        eprintln!("note: {}", self.counts());
+        self.warnings().iter().for_each(|warning| eprintln!("note: {warning}"));
     }
 
     /// Whether there are several recorders, each with a clock of its own.
@@ -54,12 +76,12 @@ impl Recordings {
     }
 
     /// What is wrong with channels, sounds that were left out, and recorders that cannot be told.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+    pub(super) fn warnings(&self) -> Vec<String> {
         self.heard.warnings(&self.survey)
     }
 
     /// How many sounds were heard, in words.
-    pub(crate) fn counts(&self) -> String {
+    pub(super) fn counts(&self) -> String {
         self.heard.counts()
     }
 

@@ -9,7 +9,7 @@ const USUAL: f64 = 343.0;
 
 /// What tells the speed of sound in air.
 #[derive(clap::Args)]
-pub(crate) struct SpeedArguments {
+pub(super) struct SpeedArguments {
     /// Temperature of the air in degrees Celsius, which tells the speed of sound: 331.3 sqrt(1 + C / 273.15) m/s.
     #[arg(long, value_name = "C", allow_negative_numbers = true)]
     temperature: Option<f64>,
@@ -24,17 +24,17 @@ pub(crate) struct Speed {
 
 impl SpeedArguments {
     /// Whether the temperature was given.
-    pub(crate) fn is_given(&self) -> bool {
+    pub(super) fn is_given(&self) -> bool {
         self.temperature.is_some()
     }
 
     /// The temperature, degrees Celsius.
-    pub(crate) fn temperature(&self) -> Option<f64> {
+    pub(super) fn temperature(&self) -> Option<f64> {
         self.temperature
     }
 
     /// The speed that was `given`, or is that of the temperature, or the usual one.
-    pub(crate) fn speed(&self, given: Option<f64>) -> Result<Speed, Failure> {
+    pub(super) fn speed(&self, given: Option<f64>) -> Result<Speed, Failure> {
         let speed = match (given, self.temperature) {
             (Some(_), Some(_)) => {
                 return Err(Failure::unusable("--speed and --temperature both tell the speed of sound: give one"));
