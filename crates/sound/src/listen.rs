@@ -62,6 +62,9 @@ pub struct Heard {
     pub recorders: Vec<usize>,
     /// When each recorder was started, and which ones cannot be told: their channels have no arrivals.
     pub alignment: Alignment,
+    /// What there is in each channel, as [`survey`](crate::survey) says it.
+    #[serde(skip)]
+    pub survey: Vec<ChannelSurvey>,
     /// Of each event, the samples of each channel about its onset, by the clock of the channel's own recorder, if
     /// [`ListenOptions::keep`] asks for them.
     #[serde(skip)]
@@ -71,7 +74,7 @@ pub struct Heard {
 /// Finds the sounds in recordings, and when each channel hears them. Each recorder has some files, which began together and
 /// have one clock; recorders may have been started apart, and each clock have its own rate. Where there are several, they are
 /// aligned by the sounds that they have in common, to tell which sounds are the same; arrival times are not changed by
-/// that. Each file is read twice, block by block.
+/// that. Each file is read twice, block by block; the first reading also gives [`Heard::survey`].
 ///
 /// # Errors
 /// If an option is out of range, a recorder has no files, there are more than 128, or a file cannot be read. A recorder that
@@ -145,8 +148,8 @@ pub fn listen_watched<P: AsRef<Path>>(
         }
     }
     monitor.finish();
-    let Gathered { events, recorders, alignment } = gathered;
-    Ok(Heard { events, arrivals, recorders, alignment, samples })
+    let Gathered { events, recorders, alignment, survey } = gathered;
+    Ok(Heard { events, arrivals, recorders, alignment, survey, samples })
 }
 
 /// The part of a channel in which an event is.
@@ -312,7 +315,8 @@ mod tests {
         assert!(errors[78] < 30e-6 && errors[40] < 2e-6, "{} {}", errors[78], errors[40]);
         assert_eq!(heard.list().lines().count(), 81);
         assert_eq!(heard.counts(), "10 channels heard 80 sounds; 8 events with 80 arrivals, 0 sounds left out");
-        let mut survey = crate::survey(&paths).unwrap();
+        let mut survey = heard.survey.clone();
+        assert_eq!(survey, crate::survey(&paths).unwrap());
         assert!(heard.warnings(&survey).is_empty());
         (survey[3].is_constant, survey[7].clipped) = (true, 0.02);
         let warnings = heard.warnings(&survey);

@@ -82,49 +82,74 @@ impl ChannelSurvey {
 /// # Errors
 /// For the first file that cannot be read, or is damaged.
 pub fn survey<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Result<Vec<ChannelSurvey>, ReadError> {
-    let (mut surveys, mut prints): (Vec<ChannelSurvey>, Vec<Print>) = (Vec::new(), Vec::new());
+    let mut surveys = Surveys::default();
     for path in paths {
-        let (of_file, of_prints) = survey_of(Recording::open(path)?)?;
-        for (mut survey, print) in of_file.into_iter().zip(of_prints) {
-            let same = prints.iter().position(|other| *other == print).filter(|_| !survey.is_constant);
+        let mut recording = Recording::open(path)?;
+        let (mut of_file, mut block) = (FileSurvey::new(&recording), Vec::new());
+        while recording.read_block(BLOCK, &mut block)? > 0 {
+            of_file.add(&block);
+        }
+        surveys.push(&recording, &of_file);
+    }
+    Ok(surveys.channels)
+}
+
+/// What there is in the files so far.
+#[derive(Default)]
+pub(crate) struct Surveys {
+    pub(crate) channels: Vec<ChannelSurvey>,
+    /// One a channel.
+    prints: Vec<Print>,
+}
+
+impl Surveys {
+    /// The next file, which has been read.
+    pub(crate) fn push(&mut self, recording: &Recording, of_file: &FileSurvey) {
+        let rate = recording.sample_rate();
+        for ((tally, &non_finite), channel) in of_file.tallies.iter().zip(recording.non_finite()).zip(1..) {
+            let print = Print(rate, tally.count, tally.hash);
+            let same = self.prints.iter().position(|other| *other == print).filter(|_| !tally.is_constant);
             let name = |other: &ChannelSurvey| ChannelName { file: other.file.clone(), channel: other.channel };
-            survey.same_as = same.and_then(|k| surveys.get(k)).map(name);
-            surveys.push(survey);
-            prints.push(print);
+            self.channels.push(ChannelSurvey {
+                file: recording.file().to_owned(),
+                channel,
+                sample_rate: rate,
+                seconds: tally.count as f64 / f64::from(rate),
+                peak: tally.peak.into(),
+                rms: (tally.squares / tally.count.max(1) as f64).sqrt(),
+                clipped: tally.clipped as f64 / tally.count.max(1) as f64,
+                non_finite,
+                is_constant: tally.is_constant,
+                same_as: same.and_then(|k| self.channels.get(k)).map(name),
+                is_truncated: recording.is_truncated(),
+            });
+            self.prints.push(print);
         }
     }
-    Ok(surveys)
 }
 
 /// By what channels are told to be the same: sample rate, number of samples, and a hash of 128 bits.
 #[derive(PartialEq)]
 struct Print(u32, u64, u128);
 
-fn survey_of(mut recording: Recording) -> Result<(Vec<ChannelSurvey>, Vec<Print>), ReadError> {
-    let mut tallies = vec![Tally::new(recording.full_scale()); recording.channels()];
-    let mut block = Vec::new();
-    while recording.read_block(BLOCK, &mut block)? > 0 {
-        for (tally, samples) in tallies.iter_mut().zip(&block) {
+/// What is known of a file that is being read.
+pub(crate) struct FileSurvey {
+    /// One a channel.
+    tallies: Vec<Tally>,
+}
+
+impl FileSurvey {
+    /// Of a recording of which nothing has been read.
+    pub(crate) fn new(recording: &Recording) -> FileSurvey {
+        FileSurvey { tallies: vec![Tally::new(recording.full_scale()); recording.channels()] }
+    }
+
+    /// The next samples of each channel.
+    pub(crate) fn add(&mut self, block: &[Vec<f32>]) {
+        for (tally, samples) in self.tallies.iter_mut().zip(block) {
             samples.iter().for_each(|&sample| tally.add(sample));
         }
     }
-    let rate = recording.sample_rate();
-    let surveys = tallies.iter().zip(recording.non_finite()).zip(1..);
-    let surveys = surveys.map(|((tally, &non_finite), channel)| ChannelSurvey {
-        file: recording.file().to_owned(),
-        channel,
-        sample_rate: rate,
-        seconds: tally.count as f64 / f64::from(rate),
-        peak: tally.peak.into(),
-        rms: (tally.squares / tally.count.max(1) as f64).sqrt(),
-        clipped: tally.clipped as f64 / tally.count.max(1) as f64,
-        non_finite,
-        is_constant: tally.is_constant,
-        same_as: None,
-        is_truncated: recording.is_truncated(),
-    });
-    let prints = tallies.iter().map(|tally| Print(rate, tally.count, tally.hash)).collect();
-    Ok((surveys.collect(), prints))
 }
 
 /// What is known of the samples so far.

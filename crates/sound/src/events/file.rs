@@ -21,14 +21,16 @@ pub(super) struct FileOnsets {
     pub(super) channels: Vec<Vec<Onset>>,
 }
 
-/// Reads a recording to its end, this many samples of each channel at a time, and finds the onsets of each channel.
+/// Reads a recording to its end, this many samples of each channel at a time, which are passed to `look`, and finds the onsets
+/// of each channel.
 ///
 /// # Errors
 /// If the sample rate is too low for the band, the signal has too little in it, or the file cannot be read.
 pub(super) fn file_onsets(
-    mut recording: Recording,
+    recording: &mut Recording,
     options: &EventOptions,
     block_length: usize,
+    mut look: impl FnMut(&[Vec<f32>]),
 ) -> Result<FileOnsets, EventError> {
     let (file, sample_rate) = (recording.file().to_owned(), recording.sample_rate());
     let (lower, highest) = (options.band[0], HIGHEST * f64::from(sample_rate));
@@ -48,6 +50,7 @@ pub(super) fn file_onsets(
     let mut channels: Vec<(Option<Stream>, Envelope, Detector)> = (0..recording.channels()).map(channel).collect();
     let (mut block, mut compressed) = (Vec::new(), Vec::new());
     while recording.read_block(block_length, &mut block)? > 0 {
+        look(&block);
         for ((stream, envelope, detector), samples) in channels.iter_mut().zip(&block) {
             let Some(stream) = stream else {
                 envelope.levels(samples).for_each(|level| detector.push(level));
@@ -88,7 +91,8 @@ mod tests {
         // What is heard of a signal that is not there does not matter.
         for signal in [Signal::Unknown, Signal::Chirp { from: 1000.0, to: 6000.0, seconds: 0.01 }] {
             let options = EventOptions { signal, ..EventOptions::default() };
-            let onsets = |block: usize| file_onsets(Recording::open(&path).unwrap(), &options, block).unwrap();
+            let onsets =
+                |block: usize| file_onsets(&mut Recording::open(&path).unwrap(), &options, block, |_| ()).unwrap();
             let expected = onsets(1 << 14);
             assert!(expected.channels.iter().all(|channel| channel.len() >= 4));
             for block in [1, 47, 1000, 1 << 20] {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::monitor::ListenMonitor;
 use crate::recording::Recording;
+use crate::survey::{FileSurvey, Surveys};
 
 use super::error::EventError;
 use super::event::{EventChannel, Events, Onset};
@@ -51,12 +52,12 @@ pub fn find_events<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     options: &EventOptions,
 ) -> Result<Events, EventError> {
-    let (channels, onsets) = hear(paths, options, &ListenMonitor::default())?;
+    let (channels, onsets) = hear(paths, options, &ListenMonitor::default(), None)?;
     Ok(events_of(channels, &onsets, options))
 }
 
 /// The channels of all files, and the onsets of each: a pass over each file. The monitor expects as many samples in a
-/// second pass.
+/// second pass. What there is in the files is added to `surveys`, if these are there.
 ///
 /// # Errors
 /// Those of [`find_events`], or if the monitor stops the reading.
@@ -64,6 +65,7 @@ pub(crate) fn hear<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     options: &EventOptions,
     monitor: &ListenMonitor,
+    mut surveys: Option<&mut Surveys>,
 ) -> Result<(Vec<EventChannel>, Vec<Vec<Onset>>), EventError> {
     options.validate()?;
     // All are opened first: what is wrong with the last one is said before the first one is read.
@@ -78,9 +80,14 @@ pub(crate) fn hear<P: AsRef<Path>>(
     let (mut channels, mut onsets): (Vec<EventChannel>, Vec<Vec<Onset>>) = (Vec::new(), Vec::new());
     monitor.begin(recordings.iter().map(samples_twice).fold(0, u64::saturating_add));
     recordings.iter_mut().for_each(|recording| recording.watch(monitor));
-    for recording in recordings {
+    for mut recording in recordings {
         let (expected, before) = (samples_twice(&recording), monitor.progress().done);
-        let heard = file_onsets(recording, options, BLOCK)?;
+        let mut survey = surveys.is_some().then(|| FileSurvey::new(&recording));
+        let look = |block: &[Vec<f32>]| survey.iter_mut().for_each(|survey| survey.add(block));
+        let heard = file_onsets(&mut recording, options, BLOCK, look)?;
+        if let (Some(surveys), Some(survey)) = (&mut surveys, &survey) {
+            surveys.push(&recording, survey);
+        }
         // A header may not say how many samples there are, or too many.
         monitor.correct(expected, (monitor.progress().done - before).saturating_mul(2));
         for (of_channel, number) in heard.channels.into_iter().zip(1..) {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::events::{Event, EventError, EventOptions, Events, Onset, events_of, hear};
 use crate::monitor::ListenMonitor;
+use crate::survey::{ChannelSurvey, Surveys};
 
 use super::align::align;
 use super::alignment::{Alignment, RecorderAlignment};
@@ -19,6 +20,8 @@ pub(crate) struct Gathered {
     /// The recorder of each channel, from 0.
     pub(crate) recorders: Vec<usize>,
     pub(crate) alignment: Alignment,
+    /// Of each channel.
+    pub(crate) survey: Vec<ChannelSurvey>,
 }
 
 /// The events of all recorders as one of them has them.
@@ -43,7 +46,8 @@ impl Gathered {
         monitor: &ListenMonitor,
     ) -> Result<Gathered, EventError> {
         alignment.validate()?;
-        let (channels, onsets) = hear(files.iter().flatten(), options, monitor)?;
+        let mut surveys = Surveys::default();
+        let (channels, onsets) = hear(files.iter().flatten(), options, monitor, Some(&mut surveys))?;
         // Each file has a first channel.
         let mut owners = files.iter().enumerate().flat_map(|(recorder, files)| files.iter().map(move |_| recorder));
         let mut owner = 0;
@@ -65,7 +69,7 @@ impl Gathered {
         };
         let onsets: Vec<Vec<Onset>> = recorders.iter().zip(onsets).map(common).collect();
         let events = events_of(channels, &onsets, &wider(options, &alignment));
-        Ok(Gathered { events, recorders, alignment })
+        Ok(Gathered { events, recorders, alignment, survey: surveys.channels })
     }
 
     /// The events by the clock of each aligned recorder.
