@@ -41,8 +41,10 @@
 //! recorders/gathered.rs, and `listen` puts all together, watched by a `monitor`; `picture` draws them.
 
 mod air;
+mod biquad;
 mod error;
 mod events;
+mod fade;
 mod flac;
 mod format;
 mod fourier;
@@ -52,6 +54,7 @@ mod kind;
 mod listen;
 mod monitor;
 mod picture;
+mod quantile;
 mod recorders;
 mod recording;
 mod room;

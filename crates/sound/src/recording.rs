@@ -12,6 +12,9 @@ use crate::kind::{Kind, kind};
 use crate::monitor::ListenMonitor;
 use crate::wav::Wav;
 
+/// Samples of each channel that are read at a time where all are read.
+pub(crate) const BLOCK: usize = 1 << 14;
+
 /// A recording that is being read, from its beginning to its end: WAV (also RF64 and BW64) with integers of 8 to 32
 /// bits or floats, or FLAC of up to 24 bits. Its content says which, not its name.
 pub struct Recording {

@@ -5,10 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::ReadError;
-use crate::recording::Recording;
-
-/// Samples of each channel that are read at a time.
-const BLOCK: usize = 1 << 14;
+use crate::recording::{BLOCK, Recording};
 
 /// A channel of a recording.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -2,13 +2,12 @@
 
 use std::f64::consts::PI;
 
-/// Below this, states of filters are zero: arithmetic on denormal numbers is slow.
-const TINY: f64 = 1e-60;
+use crate::biquad::Biquad;
 
 /// A Butterworth filter of fourth order against low frequencies (wind, traffic, hum), and one of second order against high
 /// ones. They have no overshoot before a sound begins, and little delay.
 pub(super) struct BandPass {
-    sections: [Section; 3],
+    sections: [Biquad; 3],
     /// The first sample: recordings with an offset do not begin with a jump.
     offset: Option<f64>,
 }
@@ -20,9 +19,9 @@ impl BandPass {
         let quality = |angle: f64| 1.0 / (2.0 * angle.cos());
         BandPass {
             sections: [
-                Section::high_pass(lower / sample_rate, quality(PI / 8.0)),
-                Section::high_pass(lower / sample_rate, quality(3.0 * PI / 8.0)),
-                Section::low_pass(upper / sample_rate, quality(PI / 4.0)),
+                Biquad::high_pass(lower / sample_rate, quality(PI / 8.0)),
+                Biquad::high_pass(lower / sample_rate, quality(3.0 * PI / 8.0)),
+                Biquad::low_pass(upper / sample_rate, quality(PI / 4.0)),
             ],
             offset: None,
         }
@@ -37,47 +36,7 @@ impl BandPass {
 
     /// Forgets what is too small to matter; to be called now and then.
     pub(super) fn settle(&mut self) {
-        for state in self.sections.iter_mut().flat_map(|section| &mut section.state) {
-            if state.abs() < TINY {
-                *state = 0.0;
-            }
-        }
-    }
-}
-
-/// Two poles and two zeros, by the bilinear transform, in the transposed direct form II.
-struct Section {
-    forward: [f64; 3],
-    back: [f64; 2],
-    state: [f64; 2],
-}
-
-impl Section {
-    fn high_pass(frequency: f64, quality: f64) -> Section {
-        let (k, norm) = Section::warped(frequency, quality);
-        Section::new([norm, -2.0 * norm, norm], k, norm, quality)
-    }
-
-    fn low_pass(frequency: f64, quality: f64) -> Section {
-        let (k, norm) = Section::warped(frequency, quality);
-        Section::new([k * k * norm, 2.0 * k * k * norm, k * k * norm], k, norm, quality)
-    }
-
-    fn warped(frequency: f64, quality: f64) -> (f64, f64) {
-        let k = (PI * frequency).tan();
-        (k, 1.0 / (1.0 + k / quality + k * k))
-    }
-
-    fn new(forward: [f64; 3], k: f64, norm: f64, quality: f64) -> Section {
-        let back = [2.0 * (k * k - 1.0) * norm, (1.0 - k / quality + k * k) * norm];
-        Section { forward, back, state: [0.0; 2] }
-    }
-
-    fn next(&mut self, sample: f64) -> f64 {
-        let value = self.forward[0] * sample + self.state[0];
-        self.state[0] = self.forward[1] * sample - self.back[0] * value + self.state[1];
-        self.state[1] = self.forward[2] * sample - self.back[1] * value;
-        value
+        self.sections.iter_mut().for_each(Biquad::settle);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::monitor::ListenMonitor;
-use crate::recording::Recording;
+use crate::recording::{BLOCK, Recording};
 use crate::survey::{FileSurvey, Surveys};
 
 use super::error::EventError;
@@ -11,9 +11,6 @@ use super::event::{EventChannel, Events, Onset};
 use super::file::file_onsets;
 use super::grouping::{Grouped, group};
 use super::options::EventOptions;
-
-/// Samples of each channel that are read at a time.
-const BLOCK: usize = 1 << 14;
 
 /// Finds sounds in recordings that began together and have one clock, such as the files of one recorder: a pass over each
 /// file, block by block. Channels are numbered over all files in their order; sample rates and lengths may differ.

@@ -6,13 +6,10 @@ use std::slice;
 
 use crate::error::ReadError;
 use crate::monitor::ListenMonitor;
-use crate::recording::Recording;
+use crate::recording::{BLOCK, Recording};
 
 use super::error::EventError;
 use super::event::{Event, EventChannel, Events};
-
-/// Samples of each channel that are read at a time.
-const BLOCK: usize = 1 << 14;
 
 /// The samples around an event.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,6 +7,7 @@ use realfft::RealFftPlanner;
 
 use super::bitmap::{Palette, address};
 use crate::error::ReadError;
+use crate::quantile::quantile;
 use crate::recording::Recording;
 
 /// Samples of a spectrum; half as many frequencies.
@@ -112,9 +113,7 @@ fn levels(recording: &mut Recording) -> Result<(Vec<[f64; ROWS]>, u64), ReadErro
 /// An image of levels, with time to the right and high frequencies above.
 fn image(columns: &[[f64; ROWS]]) -> String {
     let loudest = columns.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut all: Vec<f64> = columns.iter().flatten().copied().collect();
-    all.sort_by(f64::total_cmp);
-    let middle = all.get(all.len() / 2).copied().unwrap_or(f64::NEG_INFINITY);
+    let middle = quantile(columns.iter().flatten().copied().collect(), 0.5).unwrap_or(f64::NEG_INFINITY);
     // A tone has nothing but its own level.
     let dark = (loudest - RANGE).max(middle + NOISE).min(loudest - 1.0);
     // What is no number becomes zero.

@@ -1,5 +1,7 @@
 //! The clocks of a group of recorders by all matches together.
 
+use crate::quantile::quantile;
+
 use super::line::Line;
 use super::pair::Pair;
 
@@ -23,10 +25,11 @@ pub(super) fn adjust(group: &[usize], pairs: &[Pair], sounds: &[Vec<f64>], max_r
     let partners: Vec<Vec<Vec<[usize; 2]>>> = group.iter().map(|&recorder| partners(recorder, pairs, sounds)).collect();
     for _ in 0..ROUNDS {
         for (&recorder, partners) in group.iter().zip(&partners) {
-            let of = partners.iter().zip(&sounds[recorder]).filter(|(partners, _)| !partners.is_empty());
-            let middle =
-                |partners: &[[usize; 2]]| median(partners.iter().map(|&[r, k]| lines[r].at(sounds[r][k])).collect());
-            let points: Vec<(f64, f64)> = of.map(|(partners, &x)| (x, middle(partners))).collect();
+            let of = partners.iter().zip(&sounds[recorder]);
+            let middle = |partners: &[[usize; 2]]| {
+                quantile(partners.iter().map(|&[r, k]| lines[r].at(sounds[r][k])).collect(), 0.5)
+            };
+            let points: Vec<(f64, f64)> = of.filter_map(|(partners, &x)| Some((x, middle(partners)?))).collect();
             if let Some(line) = Line::fit(&points, max_rate) {
                 lines[recorder] = line;
             }
@@ -92,11 +95,4 @@ fn partners(recorder: usize, pairs: &[Pair], sounds: &[Vec<f64>]) -> Vec<Vec<[us
         }
     }
     all
-}
-
-/// The middle of some numbers; between the middle two of an even number.
-fn median(mut all: Vec<f64>) -> f64 {
-    all.sort_by(f64::total_cmp);
-    let (low, high) = (all.get(all.len().saturating_sub(1) / 2), all.get(all.len() / 2));
-    low.zip(high).map_or(0.0, |(low, high)| 0.5 * (low + high))
 }

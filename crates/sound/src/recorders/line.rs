@@ -1,5 +1,7 @@
 //! How one clock goes beside another, from the times of sounds by both.
 
+use crate::quantile::{MEDIAN, quantile};
+
 /// Rounds in which times that are far from the line get less weight.
 const ROUNDS: usize = 10;
 
@@ -8,9 +10,6 @@ const HUBER: f64 = 1.5;
 
 /// Share of the points that are not far from the middle.
 const NEAR: f64 = 0.9;
-
-/// The median of the amounts of normal errors is this share of their standard deviation.
-const MEDIAN: f64 = 0.6745;
 
 /// Onsets are known to about this, seconds.
 const LEAST: f64 = 1e-3;
@@ -59,7 +58,7 @@ impl Line {
             let scatter = line.map_or(LEAST, |line: Line| line.scatter);
             let next = weighted(points, &weights, expected, scatter)?;
             let off = |&(x, y): &(f64, f64)| (y - next.at(x)).abs();
-            let scatter = (quantile(points.iter().map(off).collect(), 0.5) / MEDIAN).max(LEAST);
+            let scatter = (quantile(points.iter().map(off).collect(), 0.5)? / MEDIAN).max(LEAST);
             let bounded =
                 |(point, alone): (&(f64, f64), &f64)| alone * (HUBER * scatter / off(point).max(1e-9)).min(1.0);
             weights = points.iter().zip(&alone).map(bounded).collect();
@@ -72,15 +71,9 @@ impl Line {
 /// Weights by which few points far from all others do not say more of the rate than others: sounds that match by chance
 /// may be anywhere.
 fn leverages(points: &[(f64, f64)]) -> Vec<f64> {
-    let middle = quantile(points.iter().map(|point| point.0).collect(), 0.5);
-    let near = quantile(points.iter().map(|point| (point.0 - middle).abs()).collect(), NEAR);
+    let middle = quantile(points.iter().map(|point| point.0).collect(), 0.5).unwrap_or(0.0);
+    let near = quantile(points.iter().map(|point| (point.0 - middle).abs()).collect(), NEAR).unwrap_or(0.0);
     points.iter().map(|point| (near / (point.0 - middle).abs().max(1e-9)).powi(2).min(1.0)).collect()
-}
-
-/// The number that this share of all is below; 0 of none.
-fn quantile(mut all: Vec<f64>, share: f64) -> f64 {
-    all.sort_by(f64::total_cmp);
-    all.get((share * all.len() as f64) as usize).copied().unwrap_or(0.0)
 }
 
 /// The line by weighted least squares, of times with this scatter.

@@ -2,16 +2,18 @@
 
 use std::f64::consts::PI;
 
+use crate::fade::fade;
+
+/// Share of the length over which both ends fade.
+const FADE: f64 = 0.05;
+
 /// A chirp at a time after its beginning: frequencies at its beginning and its end, Hz, times in seconds.
 pub(crate) fn chirp(time: f64, from: f64, to: f64, length: f64) -> f64 {
     let share = time / length;
     if !(0.0..=1.0).contains(&share) {
         return 0.0;
     }
-    // Over a twentieth of the length at either end.
-    let fade = (20.0 * share.min(1.0 - share)).min(1.0);
-    let envelope = (1.0 - (PI * fade).cos()) / 2.0;
-    envelope * (2.0 * PI * time * (from + (to - from) * share / 2.0)).sin()
+    fade(share, FADE) * (2.0 * PI * time * (from + (to - from) * share / 2.0)).sin()
 }
 
 #[cfg(test)]

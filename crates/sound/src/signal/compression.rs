@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::error::SignalError;
 use super::known::Signal;
 use super::samples::samples;
+use crate::fade::fade;
 use crate::format::HIGHEST;
 use crate::fourier::Fourier;
 
@@ -77,7 +78,7 @@ impl Compression {
         let (mut passed, mut width) = (0.0, 0.0);
         let value = |(k, (value, power)): (usize, (&Complex64, &f64))| {
             passed += power / sum;
-            let fade = fade(passed);
+            let fade = fade(passed, FADE);
             width += fade * power / (power + HALF * typical);
             // White noise remains as loud as it is in the band.
             value.conj() * turn(first + k).conj() * (fade * typical.sqrt() / (power + HALF * typical))
@@ -101,12 +102,6 @@ impl Compression {
     pub(crate) fn signal(&self, values: impl Iterator<Item = Complex64>) -> Vec<f64> {
         self.fourier.signal(std::iter::repeat_n(Complex64::default(), self.first).chain(values))
     }
-}
-
-/// How much a frequency counts below which there is this share of the power.
-fn fade(share: f64) -> f64 {
-    let end = share.min(1.0 - share).max(0.0) / FADE;
-    if end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (PI * end).cos() }
 }
 
 #[cfg(test)]

@@ -4,10 +4,7 @@ use std::path::Path;
 
 use super::error::{SignalError, TemplateError};
 use super::known::{LONGEST, Signal};
-use crate::recording::Recording;
-
-/// Samples of each channel that are read at a time.
-const BLOCK: usize = 1 << 14;
+use crate::recording::{BLOCK, Recording};
 
 impl Signal {
     /// A template from the first channel of a recording, WAV or FLAC.

@@ -102,6 +102,7 @@ fn compared(spectra: &[Spectrum], whitening: f64, delays: &Delays) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::{Arrival, Signal, TimeOptions, Window, arrival_times};
+    use crate::quantile::{MEDIAN, quantile};
     use crate::{Obstacle, Placement, RoomOptions, simulate_room};
 
     /// Seconds of a channel before and after the direct sound at the first microphone that hears it.
@@ -192,17 +193,14 @@ mod tests {
                 let wrong = all.iter().filter(|(sigma, error)| *error > f64::max(30e-6, 5.0 * sigma)).count();
                 let share = wrong as f64 / all.len() as f64;
                 assert!(share < 0.01, "{reverberation} s, {signal_to_noise} dB, {sample_rate} Hz: {share}");
-                let median = |mut all: Vec<f64>| {
-                    all.sort_by(f64::total_cmp);
-                    all[all.len() / 2]
-                };
-                let scale = median(all.iter().map(|(sigma, error)| error / sigma).collect()) / 0.6745;
+                let scale = quantile(all.iter().map(|(sigma, error)| error / sigma).collect(), 0.5).unwrap() / MEDIAN;
                 let said = format!("{reverberation} s, {signal_to_noise} dB, {sample_rate} Hz: {scale}");
                 assert!((0.8..1.3).contains(&scale), "{said}");
                 // Those that are said to be worse are worse.
                 all.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let third = all.len() / 3;
-                let error = |part: &[(f64, f64)]| median(part.iter().map(|(_, error)| *error).collect());
+                let error =
+                    |part: &[(f64, f64)]| quantile(part.iter().map(|(_, error)| *error).collect(), 0.5).unwrap();
                 let (low, high) = (error(&all[..third]), error(&all[all.len() - third..]));
                 assert!(high > 1.5 * low, "{said}: {low:e}, {high:e}");
             }

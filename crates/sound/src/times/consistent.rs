@@ -1,6 +1,7 @@
 //! The delays of all channels that agree with those of each pair.
 
 use super::correlation::Peak;
+use crate::quantile::quantile;
 
 /// Rounds of fitting, and of relaxation in each.
 const ROUNDS: usize = 12;
@@ -37,7 +38,7 @@ pub(super) fn consistent(count: usize, pairs: &[Pair]) -> Vec<f64> {
             .collect();
         relax(&mut off, &chosen);
     }
-    let middle = median(off.clone());
+    let middle = quantile(off.clone(), 0.5).unwrap_or(0.0);
     off.iter_mut().for_each(|x| *x -= middle);
     off
 }
@@ -62,12 +63,6 @@ fn relax(off: &mut [f64], chosen: &[([usize; 2], f64, f64)]) {
             }
         }
     }
-}
-
-/// The middle of some numbers; 0 of none.
-fn median(mut all: Vec<f64>) -> f64 {
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

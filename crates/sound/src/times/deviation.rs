@@ -6,18 +6,15 @@
 //! on either side. Over the sharpness of the peak that is a standard deviation of its place.
 
 use super::correlation::{Correlation, Delays};
+use crate::quantile::{MEDIAN, quantile};
 use std::f64::consts::SQRT_2;
-
-/// The median of the amounts of a normal variable of standard deviation 1.
-const MEDIAN: f64 = 0.6745;
 
 /// The standard deviation of the place of a peak, seconds, by what is within these delays of it.
 pub(super) fn deviation(correlation: &Correlation, delay: f64, delays: &Delays) -> Option<f64> {
     let sharpness = correlation.sharpness(delay);
-    let mut slopes: Vec<f64> = correlation.odd_slopes(delay, delays).into_iter().map(f64::abs).collect();
-    // The median leaves out the peaks of echoes.
-    slopes.sort_by(f64::total_cmp);
+    let slopes: Vec<f64> = correlation.odd_slopes(delay, delays).into_iter().map(f64::abs).collect();
     // At the peak both sides of what is odd are one; elsewhere they are independent, and it is half of their sum.
-    let typical = SQRT_2 * slopes.get(slopes.len() / 2)? / MEDIAN;
+    // The median leaves out the peaks of echoes.
+    let typical = SQRT_2 * quantile(slopes, 0.5)? / MEDIAN;
     (sharpness > 0.0).then(|| typical / sharpness).filter(|sigma| sigma.is_finite())
 }

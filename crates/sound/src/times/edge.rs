@@ -1,7 +1,9 @@
 //! Where a channel rises above its noise.
 
 use super::options::{TimeOptions, Window};
-use std::f64::consts::TAU;
+use crate::biquad::Biquad;
+use crate::quantile::quantile;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Time over which the envelope is a mean, seconds.
 const SMOOTHED: f64 = 2e-4;
@@ -21,9 +23,7 @@ pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<f64> {
     let envelope = envelope(&filtered, width);
     let (top, largest) =
         envelope.iter().copied().enumerate().fold((0, 0.0), |best, (k, e)| if e > best.1 { (k, e) } else { best });
-    let mut before: Vec<f64> = envelope[..top].to_vec();
-    before.sort_by(f64::total_cmp);
-    let noise = before.get(before.len() / 2).copied()?;
+    let noise = quantile(envelope[..top].to_vec(), 0.5)?;
     if largest < HEARD * noise {
         return None;
     }
@@ -38,20 +38,10 @@ pub(super) fn edge(window: &Window<'_>, options: &TimeOptions) -> Option<f64> {
     Some(window.start + place / rate)
 }
 
-/// Samples without what is below a frequency, which is a share of the sample rate: a Butterworth filter of second order by
-/// the bilinear transform.
+/// Samples without what is below a frequency, which is a share of the sample rate: a Butterworth filter of second order.
 fn high_pass(samples: &[f32], frequency: f64) -> Vec<f64> {
-    let t = (0.5 * TAU * frequency.clamp(1e-6, 0.49)).tan();
-    let scale = 1.0 / (1.0 + std::f64::consts::SQRT_2 * t + t * t);
-    let (p, q) = (2.0 * (t * t - 1.0) * scale, (1.0 - std::f64::consts::SQRT_2 * t + t * t) * scale);
-    let (mut x1, mut x2, mut y1, mut y2) = (0.0, 0.0, 0.0, 0.0);
-    let step = |x: &f32| {
-        let x = f64::from(*x);
-        let y = scale * (x - 2.0 * x1 + x2) - p * y1 - q * y2;
-        (x2, x1, y2, y1) = (x1, x, y1, y);
-        y
-    };
-    samples.iter().map(step).collect()
+    let mut filter = Biquad::high_pass(frequency.clamp(1e-6, 0.49), FRAC_1_SQRT_2);
+    samples.iter().map(|sample| filter.next(f64::from(*sample))).collect()
 }
 
 /// Root of the mean square over the last `width` samples.

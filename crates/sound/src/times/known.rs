@@ -7,6 +7,7 @@ use super::arrival::{Arrival, PEAKS};
 use super::correlation::{Correlation, Delays};
 use super::deviation::deviation;
 use super::options::Window;
+use crate::quantile::quantile;
 use crate::signal::Compression;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -60,9 +61,8 @@ pub(super) fn arrival(window: &Window<'_>, compression: &Compression) -> Option<
 fn pulses(envelope: &[f64]) -> Vec<usize> {
     let largest = |best: (usize, f64), (k, e): (usize, &f64)| if *e > best.1 { (k, *e) } else { best };
     let (at, top) = envelope.iter().enumerate().fold((0, 0.0), largest);
-    let mut before = envelope[..at].to_vec();
-    before.sort_by(f64::total_cmp);
-    let Some(noise) = before.get(before.len() / 2).filter(|noise| top > HEARD * **noise) else { return Vec::new() };
+    let noise = quantile(envelope[..at].to_vec(), 0.5);
+    let Some(noise) = noise.filter(|noise| top > HEARD * noise) else { return Vec::new() };
     let least = (STRONG * top).max(HEARD * noise);
     let is_top = |k: &usize| envelope[*k] >= least && envelope[*k] > envelope[k - 1] && envelope[*k] >= envelope[k + 1];
     (1..envelope.len().saturating_sub(1)).filter(is_top).collect()

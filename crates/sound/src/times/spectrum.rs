@@ -1,6 +1,7 @@
 //! What an event is made of, by frequency.
 
 use super::options::{TimeOptions, Window};
+use crate::fade::fade;
 use crate::format::HIGHEST;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -39,7 +40,7 @@ impl Spectrum {
         let mut values = vec![Complex64::default(); count];
         for (k, sample) in samples.iter().enumerate() {
             let at = (first + k) as f64 / rate - begin;
-            let sample = f64::from(*sample) * fade(at / options.length);
+            let sample = f64::from(*sample) * fade(at / options.length, FADE);
             // The edge is the time zero.
             let phase = |frequency: f64| Complex64::cis(-TAU * frequency * (at - options.before));
             let (mut turn, by) = (sample * phase(lowest * step), phase(step));
@@ -65,10 +66,4 @@ impl Spectrum {
         }
         sound
     }
-}
-
-/// A window whose ends fade, over the share of its length that has passed.
-fn fade(share: f64) -> f64 {
-    let end = share.min(1.0 - share) / FADE;
-    if end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (0.5 * TAU * end.max(0.0)).cos() }
 }
