@@ -38,8 +38,8 @@ pub enum ReadError {
     },
     /// The samples are stored in a way that is not read.
     #[error(
-        "{file}: has samples as {encoding}; integers of 8 to 32 bits and floats of 32 or 64 bits can be read: convert it, for \
-         instance with `ffmpeg -i IN -c:a pcm_s24le OUT.wav`"
+        "{file}: has samples as {encoding}; WAV with integers of 8 to 32 bits or floats of 32 or 64 bits, and FLAC of 8, 12, 16, \
+         20 or 24 bits, can be read: convert it, for instance with `ffmpeg -i IN -c:a pcm_s24le OUT.wav`"
     )]
     Encoding {
         /// The file.

@@ -8,6 +8,16 @@ use crate::error::ReadError;
 use crate::format::{self, Format};
 use crate::input::Input;
 
+/// Why a block cannot be decoded.
+enum Problem {
+    Damage(String),
+    /// It has this, which claxon does not know.
+    Unsupported(&'static str),
+}
+
+/// Bits of samples that blocks may have: claxon knows no others in their headers.
+const BITS: [u32; 5] = [8, 12, 16, 20, 24];
+
 /// The samples of a FLAC file.
 pub(crate) struct Flac {
     file: String,
@@ -23,7 +33,7 @@ pub(crate) struct Flac {
     decoded: u64,
     is_finished: bool,
     /// Why nothing more can be decoded.
-    damage: Option<String>,
+    problem: Option<Problem>,
     /// Whether the file has ended before its samples.
     pub(crate) is_truncated: bool,
 }
@@ -32,7 +42,7 @@ impl Flac {
     /// Reads the header.
     ///
     /// # Errors
-    /// If it is cut off or wrong.
+    /// If it is cut off or wrong, or samples have a number of bits that cannot be decoded.
     pub(crate) fn new(mut input: Input) -> Result<Flac, ReadError> {
         let file = input.file.clone();
         let head = head(&mut input)?;
@@ -45,9 +55,12 @@ impl Flac {
         if let Some(problem) = format::problem(channels, info.sample_rate) {
             return Err(ReadError::Header { file, problem });
         }
-        let full_scale = format::full_scale(info.bits_per_sample.clamp(1, 32));
-        // The header has five bits for bits: never more than 32.
-        let step = (0.5_f64).powi(info.bits_per_sample.clamp(1, 32) as i32 - 1) as f32;
+        let bits = info.bits_per_sample;
+        if !BITS.contains(&bits) {
+            return Err(ReadError::Encoding { file, encoding: format!("FLAC of {bits} bits") });
+        }
+        let full_scale = format::full_scale(bits);
+        let step = (0.5_f64).powi(bits as i32 - 1) as f32;
         let frames = info.samples;
         let format = Format { sample_rate: info.sample_rate, channels, full_scale, frames };
         Ok(Flac {
@@ -59,7 +72,7 @@ impl Flac {
             given: 0,
             decoded: 0,
             is_finished: false,
-            damage: None,
+            problem: None,
             is_truncated: false,
         })
     }
@@ -94,8 +107,8 @@ impl Flac {
 
     /// Decodes the next block; `false` at the end.
     fn decode(&mut self) -> Result<bool, ReadError> {
-        if let Some(problem) = &self.damage {
-            return Err(self.damaged(problem.clone()));
+        if let Some(problem) = &self.problem {
+            return Err(self.error(problem));
         }
         let said = self.format.frames;
         if self.is_finished || said.is_some_and(|said| self.decoded >= said) {
@@ -109,7 +122,9 @@ impl Flac {
                 self.block = block;
                 return Ok(true);
             }
-            Ok(Some(block)) => format!("{} channels in place of {}", block.channels(), self.format.channels),
+            Ok(Some(block)) => {
+                Problem::Damage(format!("{} channels in place of {}", block.channels(), self.format.channels))
+            }
             Ok(None) => {
                 self.is_finished = true;
                 self.is_truncated |= said.is_some_and(|said| self.decoded < said);
@@ -120,16 +135,24 @@ impl Flac {
                 self.is_truncated = true;
                 return Ok(false);
             }
-            Err(error) => error.to_string(),
+            Err(claxon::Error::Unsupported(feature)) => Problem::Unsupported(feature),
+            Err(error) => Problem::Damage(error.to_string()),
         };
         // The decoder may be anywhere: samples that it finds later would have the wrong times.
-        self.damage = Some(problem.clone());
-        Err(self.damaged(problem))
+        let error = self.error(&problem);
+        self.problem = Some(problem);
+        Err(error)
     }
 
-    fn damaged(&self, problem: String) -> ReadError {
-        let seconds = self.decoded as f64 / f64::from(self.format.sample_rate);
-        ReadError::Damaged { file: self.file.clone(), seconds, problem }
+    fn error(&self, problem: &Problem) -> ReadError {
+        let file = self.file.clone();
+        match problem {
+            Problem::Damage(problem) => {
+                let seconds = self.decoded as f64 / f64::from(self.format.sample_rate);
+                ReadError::Damaged { file, seconds, problem: problem.clone() }
+            }
+            Problem::Unsupported(feature) => unsupported(file, feature),
+        }
     }
 
     /// The recording's name in messages.
@@ -167,11 +190,16 @@ fn head(input: &mut Input) -> Result<Vec<u8>, ReadError> {
     }
 }
 
+/// The error for what FLAC has and claxon has not.
+fn unsupported(file: String, feature: &str) -> ReadError {
+    ReadError::Encoding { file, encoding: format!("FLAC that cannot be decoded ({feature})") }
+}
+
 fn header_error(file: String, error: claxon::Error) -> ReadError {
     match error {
         claxon::Error::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => ReadError::Io { file, source },
         claxon::Error::IoError(_) => ReadError::Header { file, problem: "its header is cut off".into() },
-        claxon::Error::Unsupported(encoding) => ReadError::Encoding { file, encoding: format!("FLAC: {encoding}") },
+        claxon::Error::Unsupported(feature) => unsupported(file, feature),
         error => ReadError::Header { file, problem: error.to_string() },
     }
 }

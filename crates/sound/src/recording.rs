@@ -16,7 +16,7 @@ use crate::wav::Wav;
 pub(crate) const BLOCK: usize = 1 << 14;
 
 /// A recording that is being read, from its beginning to its end: WAV (also RF64 and BW64) with integers of 8 to 32
-/// bits or floats, or FLAC of up to 24 bits. Its content says which, not its name.
+/// bits or floats, or FLAC of 8, 12, 16, 20 or 24 bits. Its content says which, not its name.
 pub struct Recording {
     source: Source,
     /// Of each channel, samples that were no numbers.

@@ -116,3 +116,24 @@ fn constant_and_verbatim_blocks_by_hand() {
     assert_eq!((recording.sample_rate(), recording.frames()), (8000, Some(16)));
     assert_eq!(recording.read_to_end().unwrap(), [ramp]);
 }
+
+#[test]
+fn what_cannot_be_decoded_is_no_damage() {
+    // Bits less one are five bits from the last one of byte 20 on.
+    for (bits, bytes) in [(32, [0x01, 0xf0]), (18, [0x01, 0x10])] {
+        let mut file = by_hand(&[0, 0x40, 0]);
+        file[20..22].copy_from_slice(&bytes);
+        let error = open(&file).map(|_| ()).unwrap_err();
+        let said = error.to_string();
+        assert!(matches!(error, ReadError::Encoding { .. }) && said.contains("ffmpeg"), "{said}");
+        assert!(said.contains(&format!("FLAC of {bits} bits;")), "{said}");
+    }
+    // A predictor of order 0, and what is left of it: coding method 0, one partition, the escape code for numbers as they
+    // are, of 8 bits each, and these: 16 zeros.
+    let escaped = [&[0b0001_0000, 0b0000_0011, 0b1101_0000][..], &[0; 16]].concat();
+    let (mut recording, mut block) = (open(&by_hand(&escaped)).unwrap(), Vec::new());
+    for _ in 0..2 {
+        let error = recording.read_block(16, &mut block).unwrap_err();
+        assert!(matches!(error, ReadError::Encoding { .. }), "{error}");
+    }
+}
