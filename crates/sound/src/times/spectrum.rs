@@ -10,6 +10,9 @@ use std::f64::consts::TAU;
 /// from folding.
 const PADDING: f64 = 2.0;
 
+/// Samples that are taken together.
+const TOGETHER: usize = 8;
+
 /// Share of the length over which both ends fade.
 const FADE: f64 = 0.1;
 
@@ -38,15 +41,21 @@ impl Spectrum {
         let samples = window.samples.get(first..).unwrap_or_default();
         let samples = &samples[..samples.len().min((options.length * rate) as usize)];
         let mut values = vec![Complex64::default(); count];
-        for (k, sample) in samples.iter().enumerate() {
-            let at = (first + k) as f64 / rate - begin;
-            let sample = f64::from(*sample) * fade(at / options.length, FADE);
-            // The edge is the time zero.
-            let phase = |frequency: f64| Complex64::cis(-TAU * frequency * (at - options.before));
-            let (mut turn, by) = (sample * phase(lowest * step), phase(step));
+        // The turn of a sample from one frequency to the next waits for the one before; those of several samples do not.
+        for (part, samples) in samples.chunks(TOGETHER).enumerate() {
+            let (mut turns, mut by) = ([Complex64::default(); TOGETHER], [Complex64::default(); TOGETHER]);
+            for (k, sample) in samples.iter().enumerate() {
+                let at = (first + part * TOGETHER + k) as f64 / rate - begin;
+                // The edge is the time zero.
+                let phase = |frequency: f64| Complex64::cis(-TAU * frequency * (at - options.before));
+                let sample = f64::from(*sample) * fade(at / options.length, FADE);
+                (turns[k], by[k]) = (sample * phase(lowest * step), phase(step));
+            }
             for value in &mut values {
-                *value += turn;
-                turn *= by;
+                for (turn, by) in turns.iter_mut().zip(&by) {
+                    *value += *turn;
+                    *turn *= by;
+                }
             }
         }
         Spectrum { values, step, first: lowest as usize }
