@@ -72,6 +72,11 @@ impl<'a, const D: usize> Draft<'a, D> {
         })
     }
 
+    /// Without reflections alone.
+    pub(crate) fn without_reflections(self) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        self.then(|Draft { state, .. }| state.leave_out_reflections())
+    }
+
     /// The calibration: the network with what is known beforehand, and how sure it is.
     pub(crate) fn judged(self) -> Result<Calibration<D>, CalibrateError<D>> {
         let draft = self.then(Draft::settle)?;

@@ -14,12 +14,11 @@ use faer::linalg::cholesky::llt;
 use faer::prelude::default;
 use faer::{MatMut, MatRef};
 use hc::Monitor;
-use hc::poly::simd::Isa;
 use std::array::from_fn;
 
 use super::cancel::{Cancelled, apart, check};
 use super::clock_block::ClockBlock;
-use super::eliminate::Eliminate;
+use super::eliminate::{Batch, ROOM};
 use crate::bordered::{Bordered, Placed};
 use crate::distances::ReceiverDistance;
 use crate::loss::Loss;
@@ -51,17 +50,16 @@ pub(crate) struct Normal<const D: usize = 2> {
     transmitter_blocks: Vec<(Bordered<D>, Placed<D>)>,
     /// Inverse Cholesky factors of the damped transmitter blocks.
     inverse_factors: Vec<Option<Bordered<D>>>,
+    /// With room beyond its end.
     schur: Vec<f64>,
     /// Of the coordinates of receivers, then of the unknowns of clocks.
     reduced_steps: Vec<f64>,
     transmitter_steps: Vec<Placed<D>>,
-    /// D + 1 rows: what a transmitter couples to receivers and clocks, in the frame in which its block is
-    /// the identity.
-    coupling: Vec<f64>,
+    /// What transmitters couple to receivers and clocks.
+    batch: Batch<D>,
     /// What a transmitter that few receivers hear couples to them: coordinates in ascending order, and their
     /// columns.
     few: Vec<(usize, Placed<D>)>,
-    isa: Isa,
     scratch: MemBuffer,
 }
 
@@ -79,12 +77,11 @@ impl<const D: usize> Normal<D> {
             between: Vec::with_capacity(observations.distances().len()),
             transmitter_blocks: vec![(Bordered::ZERO, ([0.0; D], 0.0)); n],
             inverse_factors: vec![None; n],
-            schur: vec![0.0; size * size],
+            schur: vec![0.0; size * size + ROOM],
             reduced_steps: vec![0.0; size],
             transmitter_steps: vec![([0.0; D], 0.0); n],
-            coupling: vec![0.0; (D + 1) * size],
+            batch: Batch::new(size),
             few: Vec::with_capacity(D * m / SPARSE),
-            isa: Isa::detect(),
             scratch: MemBuffer::new(factor.or(solve)),
         }
     }
@@ -233,7 +230,7 @@ impl<const D: usize> Normal<D> {
             return Ok(false);
         }
         let size = self.reduced_steps.len();
-        let schur = MatRef::from_column_major_slice(&self.schur, size, size);
+        let schur = MatRef::from_column_major_slice(&self.schur[..size * size], size, size);
         let rhs = MatMut::from_column_major_slice_mut(&mut self.reduced_steps, size, 1);
         llt::solve::solve_in_place(schur, rhs, Par::Seq, MemStack::new(&mut self.scratch));
         self.substitute_back(observations);
@@ -253,7 +250,7 @@ impl<const D: usize> Normal<D> {
         });
         let (is_definite, schur) = match factored {
             Ok((is_definite, schur)) => (Ok(is_definite), schur),
-            Err(cancelled) => (Err(cancelled), vec![0.0; size * size]),
+            Err(cancelled) => (Err(cancelled), vec![0.0; size * size + ROOM]),
         };
         self.schur = schur;
         is_definite
@@ -290,6 +287,7 @@ impl<const D: usize> Normal<D> {
         let trace = |rows: &[[f64; D]; D]| (0..D).map(|k| rows[k][k]).sum::<f64>();
         let floor = 1e-12 * self.receiver_blocks.iter().map(|(rows, _)| trace(rows)).fold(1e-300, f64::max);
         self.schur.fill(0.0);
+        self.batch.clear();
         for (i, (rows, gradient)) in self.receiver_blocks.iter().enumerate() {
             let at = D * i;
             for a in 0..D {
@@ -321,6 +319,7 @@ impl<const D: usize> Normal<D> {
             let (block, gradient) = &self.transmitter_blocks[j];
             self.inverse_factors[j] = block.inverse_cholesky(grow, floor * damping);
             let Some(inverse) = self.inverse_factors[j] else {
+                self.batch.take_off(&mut self.schur);
                 for ((k, o), (u, w)) in places.zip(column).zip(rays) {
                     let at = D * o.receiver;
                     for a in 0..D {
@@ -337,6 +336,7 @@ impl<const D: usize> Normal<D> {
                 |(u, w): &([f64; D], f64)| (inverse.forward((u.map(|u| w * u), observations.of_offset(*w))), *u);
             if SPARSE * column.len() <= self.receivers && self.clocks.is_empty() {
                 // Few receivers: their blocks alone.
+                self.batch.take_off(&mut self.schur);
                 self.few.clear();
                 for (o, ray) in column.iter().zip(rays) {
                     let ((y, last), u) = coupled(ray);
@@ -365,24 +365,23 @@ impl<const D: usize> Normal<D> {
                 }
                 continue;
             }
-            let rows = &mut self.coupling;
-            rows.fill(0.0);
+            let rows = self.batch.next(&mut self.schur);
             for ((k, o), ray) in places.zip(column).zip(rays) {
                 let ((y, last), u) = coupled(ray);
                 let (at, terms) = (D * o.receiver, terms.of(k));
-                for (row, y) in rows.chunks_exact_mut(size).zip(y.into_iter().chain([last])) {
+                for (row, y) in rows.chunks_exact_mut(size + ROOM).zip(y.into_iter().chain([last])) {
                     // Candidates of one cell add up.
                     row[at..at + D].iter_mut().zip(u).for_each(|(entry, u)| *entry += y * u);
                     terms.iter().for_each(|&(at, x)| row[at] += y * x);
                 }
             }
-            for (row, z) in rows.chunks_exact(size).zip(z.0.into_iter().chain([z.1])) {
+            for (row, z) in rows.chunks_exact(size + ROOM).zip(z.0.into_iter().chain([z.1])) {
                 for (g, b) in self.reduced_steps.iter_mut().zip(row) {
                     *g += b * z;
                 }
             }
-            self.isa.run(Eliminate::<D> { schur: &mut self.schur, rows });
         }
+        self.batch.take_off(&mut self.schur);
         self.hold(observations.held());
         Ok(())
     }
@@ -437,7 +436,8 @@ impl<const D: usize> Normal<D> {
     /// The Schur complement of the last `reduce`, lower triangle, column-major: as many rows as there are reduced
     /// unknowns.
     pub(crate) fn schur(&self) -> &[f64] {
-        &self.schur
+        let size = self.reduced_steps.len();
+        &self.schur[..size * size]
     }
 
     /// Inverse Cholesky factor of a transmitter's block, of the last `reduce`; `None` if the block
@@ -463,7 +463,7 @@ impl<const D: usize> Normal<D> {
 /// Replaces a column-major matrix, of which the lower triangle counts, by its Cholesky factor; false
 /// if it is not positive definite.
 fn cholesky(matrix: &mut [f64], size: usize, scratch: &mut MemBuffer) -> bool {
-    let matrix = MatMut::from_column_major_slice_mut(matrix, size, size);
+    let matrix = MatMut::from_column_major_slice_mut(&mut matrix[..size * size], size, size);
     llt::factor::cholesky_in_place(matrix, default(), Par::Seq, MemStack::new(scratch), default()).is_ok()
 }
 

@@ -10,7 +10,7 @@ use crate::calibrate::model::excluded::plane_is_excluded;
 use crate::calibrate::model::known_heights::{KnownHeights, in_plane};
 use crate::calibrate::model::lifted::{from_plane, lifted, unless_stopped};
 use crate::calibrate::model::question::Question;
-use crate::calibrate::options::CalibrateOptions;
+use crate::calibrate::options::{CalibrateOptions, ReceiverDelays};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::steps::{Draft, calibrate_with};
 use crate::flatness::{FLAT, slenderness};
@@ -114,13 +114,26 @@ fn choose(
         return Ok(Calibrated::Space(space));
     }
     let mut flat = draft.cleared()?.judged()?;
+    let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
+    let is_plain = settled && flat.fits && flat.unique_receivers;
+    // Errors of receivers that are told, and not taken out, change nothing of the networks; in space on planar measurements
+    // it takes longest to look for them.
+    if is_plain
+        && options.receiver_delays == ReceiverDelays::None
+        && let Some(raised) = &raised
+        && let Some(raised) = unless_stopped(raised.clone().without_reflections().and_then(Draft::judged))?
+    {
+        let test = question.compare(&flat, &raised);
+        if !test.is_space() {
+            return Ok(Calibrated::Plane(planar(flat, test)));
+        }
+    }
     let raised = match raised {
         Some(raised) => unless_stopped(raised.cleared().and_then(Draft::judged))?,
         None => None,
     };
     let mut test = raised.as_ref().map_or_else(DimensionTest::default, |raised| question.compare(&flat, raised));
-    let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
-    if !(settled && flat.fits && flat.unique_receivers && !test.is_space()) {
+    if !(is_plain && !test.is_space()) {
         match question.search_space(&flat, raised, test)? {
             Some((space, true)) => return Ok(Calibrated::Space(space)),
             Some((space, false)) => test = space.dimension_test.unwrap_or(test),
@@ -130,12 +143,17 @@ fn choose(
             flat = calibrate_with(measured, &plane, &[], monitor)?;
         }
     }
+    Ok(Calibrated::Plane(planar(flat, test)))
+}
+
+/// The planar network that is chosen, with what speaks against it.
+fn planar(mut flat: Calibration, test: DimensionTest) -> Calibration {
     doubt(&mut flat, test);
     if on_conics(&flat) {
         flat.determined = false;
         flat.call_not_unique(RAISED.into());
     }
-    Ok(Calibrated::Plane(flat))
+    flat
 }
 
 /// Whether a planar network that was not said to be one, or another that fits as well, may have its transmitters raised.
