@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::events::{ChannelSamples, EventChannel, EventOptions, Events, watched_windows};
 use crate::monitor::ListenMonitor;
-use crate::recorders::{Alignment, AlignmentOptions, Gathered, OwnEvents, RecorderAlignment};
+use crate::recorders::{Alignment, AlignmentOptions, FilesApart, Gathered, OwnEvents, RecorderAlignment};
 use crate::signal::Signal;
 use crate::survey::ChannelSurvey;
 use crate::times::{Arrival, TimeOptions, Window, arrival_times};
@@ -65,6 +65,9 @@ pub struct Heard {
     /// What there is in each channel, as [`survey`](crate::survey) says it.
     #[serde(skip)]
     pub survey: Vec<ChannelSurvey>,
+    /// Files of a recorder that seem not to have begun together.
+    #[serde(skip)]
+    apart: Vec<FilesApart>,
     /// Of each event, the samples of each channel about its onset, by the clock of the channel's own recorder, if
     /// [`ListenOptions::keep`] asks for them.
     #[serde(skip)]
@@ -72,9 +75,10 @@ pub struct Heard {
 }
 
 /// Finds the sounds in recordings, and when each channel hears them. Each recorder has some files, which began together and
-/// have one clock; recorders may have been started apart, and each clock have its own rate. Where there are several, they are
-/// aligned by the sounds that they have in common, to tell which sounds are the same; arrival times are not changed by
-/// that. Each file is read twice, block by block; the first reading also gives [`Heard::survey`].
+/// have one clock: files into which a recording was split are joined before. Recorders may have been started apart, and each
+/// clock have its own rate. Where there are several, they are aligned by the sounds that they have in common, to tell which
+/// sounds are the same; arrival times are not changed by that. Each file is read twice, block by block; the first reading also
+/// gives [`Heard::survey`].
 ///
 /// # Errors
 /// If an option is out of range, a recorder has no files, there are more than 128, or a file cannot be read. A recorder that
@@ -148,8 +152,8 @@ pub fn listen_watched<P: AsRef<Path>>(
         }
     }
     monitor.finish();
-    let Gathered { events, recorders, alignment, survey } = gathered;
-    Ok(Heard { events, arrivals, recorders, alignment, survey, samples })
+    let Gathered { events, recorders, alignment, survey, apart } = gathered;
+    Ok(Heard { events, arrivals, recorders, alignment, survey, apart, samples })
 }
 
 /// The part of a channel in which an event is.
@@ -217,13 +221,14 @@ impl Heard {
         self.recorders.iter().map(|&recorder| names.get(recorder).cloned().unwrap_or_default()).collect()
     }
 
-    /// What may be wrong, in words: with channels, of which this is the [survey](crate::survey) over all files, with recorders that
-    /// cannot be aligned, and sounds that were left out.
+    /// What may be wrong, in words: with channels, of which this is the [survey](crate::survey) over all files, with files of a
+    /// recorder that seem not to have begun together, with recorders that cannot be aligned, and sounds that were left out.
     pub fn warnings(&self, survey: &[ChannelSurvey]) -> Vec<String> {
         let of_channel = |(name, channel): (String, &ChannelSurvey)| {
             channel.problems().into_iter().map(move |problem| format!("channel {name} {problem}"))
         };
         let mut all: Vec<String> = self.names().into_iter().zip(survey).flat_map(of_channel).collect();
+        all.extend(self.apart.iter().map(ToString::to_string));
         all.extend(self.alignment.unaligned.iter().map(ToString::to_string));
         all.extend(self.events.dropped.iter().map(ToString::to_string));
         all

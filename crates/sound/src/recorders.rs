@@ -4,7 +4,7 @@
 //! one offset makes more sounds coincide than chance does (`coincidence`), and those that match say it more exactly, with a
 //! rate (`pair`, `line`). Three recorders must agree (`cycles`), and all that do get their place by all matches together
 //! (`adjust`). The result is an `alignment`, by
-//! which `gathered` finds the events of all recorders.
+//! which `gathered` finds the events of all recorders. Files of one recorder must have begun `together`.
 
 mod adjust;
 mod align;
@@ -18,7 +18,9 @@ mod pair;
 mod sounds;
 #[cfg(test)]
 mod tests;
+mod together;
 
 pub use alignment::{Alignment, RecorderAlignment, Unaligned, UnalignedReason};
 pub(crate) use gathered::{Gathered, OwnEvents};
 pub use options::AlignmentOptions;
+pub(crate) use together::FilesApart;

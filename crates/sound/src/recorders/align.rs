@@ -8,10 +8,7 @@ use super::coincidence::LEAST;
 use super::cycles::{Contradicted, largest_group, take_out_contradicted};
 use super::options::AlignmentOptions;
 use super::pair::Pair;
-use super::sounds::sounds;
-
-/// By how much onsets may be wrong, seconds.
-const TOLERANCE: f64 = 3e-3;
+use super::sounds::{sounds, tolerance};
 
 /// Most sounds of a recorder that are compared, and most differences between two sounds of all recorders, unless each has
 /// no more than the fewest.
@@ -22,17 +19,14 @@ const FEWEST: usize = 32;
 /// Aligns recorders, from the onsets of each channel of each in the order of time. `events` says how far microphones are
 /// apart.
 pub(super) fn align(recorders: &[Vec<Vec<Onset>>], events: &EventOptions, options: &AlignmentOptions) -> Alignment {
-    let (tolerance, max_rate) = (events.spread() + TOLERANCE, options.max_rate * 1e-6);
+    let (tolerance, max_rate) = (tolerance(events), options.max_rate * 1e-6);
     let pairs = recorders.len() * recorders.len().saturating_sub(1) / 2;
     if pairs == 0 {
         let recorders = (0..recorders.len()).map(RecorderAlignment::reference).collect();
         return Alignment { recorders, unaligned: Vec::new() };
     }
     let most = (DIFFERENCES / pairs).isqrt().clamp(FEWEST, MOST);
-    // Further apart than twice the tolerance, a sound has at most one partner.
-    let gap = (2.0 * tolerance).max(events.dead_time());
-    let heard = |channels: &Vec<Vec<Onset>>| sounds(channels, gap, events.weakest_first_db, most);
-    let sounds: Vec<Vec<f64>> = recorders.iter().map(heard).collect();
+    let sounds: Vec<Vec<f64>> = recorders.iter().map(|channels| sounds(channels, events, most)).collect();
     let enough: Vec<usize> = (0..sounds.len()).filter(|&k| sounds[k].len() >= LEAST).collect();
     let mut all = Vec::new();
     for (k, &a) in enough.iter().enumerate() {

@@ -79,6 +79,12 @@ pub(super) fn coincidence(a: &[f64], b: &[f64], tolerance: f64, most: f64) -> Op
     Some(Coincidence { from: middle, to: window.middle, rate, rival })
 }
 
+/// At least the amount of the logarithm of the probability of so many by chance where this many are expected: the bound of
+/// Chernoff for a Poisson distribution.
+pub(super) fn surprise(count: f64, expected: f64) -> f64 {
+    if count > expected { count * (count / expected).ln() - count + expected } else { 0.0 }
+}
+
 /// Differences that lie together.
 #[derive(Debug, Clone, Copy)]
 struct Window {
@@ -90,11 +96,9 @@ struct Window {
 }
 
 impl Window {
-    /// At least the amount of the logarithm of the probability of so many by chance: the bound of Chernoff for a Poisson
-    /// distribution. A window begins at a difference, which does not count.
+    /// How surprising so many are. A window begins at a difference, which does not count.
     fn surprise(&self) -> f64 {
-        let (count, expected) = (self.count as f64 - 1.0, self.expected);
-        if count > expected { count * (count / expected).ln() - count + expected } else { 0.0 }
+        surprise(self.count as f64 - 1.0, self.expected)
     }
 
     /// How many chance does not explain.

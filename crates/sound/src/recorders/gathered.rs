@@ -9,6 +9,7 @@ use crate::survey::{ChannelSurvey, Surveys};
 use super::align::align;
 use super::alignment::{Alignment, RecorderAlignment};
 use super::options::AlignmentOptions;
+use super::together::{File, FilesApart, apart};
 
 /// How many standard deviations of the ways of sounds the times of aligned recorders may be apart beside the spread.
 const DEVIATIONS: f64 = 3.0;
@@ -22,6 +23,7 @@ pub(crate) struct Gathered {
     pub(crate) alignment: Alignment,
     /// Of each channel.
     pub(crate) survey: Vec<ChannelSurvey>,
+    pub(crate) apart: Vec<FilesApart>,
 }
 
 /// The events of all recorders as one of them has them.
@@ -62,6 +64,15 @@ impl Gathered {
         for (&recorder, onsets) in recorders.iter().zip(&onsets) {
             heard[recorder].push(onsets.clone());
         }
+        let is_last = |k: &usize| channels.get(k + 1).is_none_or(|next| next.channel == 1);
+        let mut begin = 0;
+        let file = |k: usize| {
+            let onsets = &onsets[begin..=k];
+            begin = k + 1;
+            File { recorder: recorders[k], name: &channels[k].file, seconds: surveys.channels[k].seconds, onsets }
+        };
+        let all: Vec<File<'_>> = (0..channels.len()).filter(is_last).map(file).collect();
+        let apart = apart(&all, options);
         let alignment = align(&heard, options, alignment);
         let common = |(recorder, onsets): (&usize, Vec<Onset>)| match alignment.of(*recorder) {
             Some(clock) => onsets.into_iter().map(|it| Onset { seconds: clock.common(it.seconds), ..it }).collect(),
@@ -69,7 +80,7 @@ impl Gathered {
         };
         let onsets: Vec<Vec<Onset>> = recorders.iter().zip(onsets).map(common).collect();
         let events = events_of(channels, &onsets, &wider(options, &alignment));
-        Ok(Gathered { events, recorders, alignment, survey: surveys.channels })
+        Ok(Gathered { events, recorders, alignment, survey: surveys.channels, apart })
     }
 
     /// The events by the clock of each aligned recorder.

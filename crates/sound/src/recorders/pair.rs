@@ -63,7 +63,7 @@ impl Pair {
 }
 
 /// The sounds that are the same by this line. At most one is so near to each: sounds of a recorder are further apart.
-fn matched(a: &[f64], b: &[f64], line: &Line, tolerance: f64) -> Vec<[usize; 2]> {
+pub(super) fn matched(a: &[f64], b: &[f64], line: &Line, tolerance: f64) -> Vec<[usize; 2]> {
     let mut matches = Vec::new();
     let mut i = 0;
     for (j, &y) in b.iter().enumerate() {

@@ -145,3 +145,31 @@ fn recorders_need_files() {
     options.alignment.max_rate = f64::NAN;
     assert!(listen(&[vec!["a.wav"]], &options).unwrap_err().to_string().contains("rate"));
 }
+
+#[test]
+fn files_that_follow_one_another_are_not_taken_side_by_side_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut options = RoomOptions::default();
+    let times = uneven(24, 0.0, 9);
+    (options.microphones, options.sources) = (Placement::Random(4), Placement::Random(times.len()));
+    (options.times, options.signal_to_noise, options.seed) = (Some(times), Some(20.0), 9);
+    let made = simulate_room(&options).unwrap();
+    let warned = |name: &str, parts: [Vec<Vec<f32>>; 2]| {
+        let paths = ["1", "2"].map(|number| folder.path().join(format!("{name}{number}.wav")));
+        for (path, channels) in paths.iter().zip(parts) {
+            write_wav(path, made.sample_rate, &channels, SampleFormat::Int16).unwrap();
+        }
+        let heard = heard(&[paths.to_vec()]);
+        let mut warnings = heard.warnings(&heard.survey);
+        warnings.retain(|warning| warning.contains("join them"));
+        warnings
+    };
+    // Both halves, as a recorder splits them; and two channels in each file.
+    let half = made.channels[0].len() / 2;
+    let part =
+        |range: std::ops::Range<usize>| made.channels.iter().map(|channel| channel[range.clone()].to_vec()).collect();
+    let split = warned("split", [part(0..half), part(half..2 * half)]);
+    assert!(split.len() == 1 && split[0].contains("split1.wav and ") && split[0].contains("split2.wav"), "{split:?}");
+    let beside = warned("beside", [made.channels[..2].to_vec(), made.channels[2..].to_vec()]);
+    assert!(beside.is_empty(), "{beside:?}");
+}
