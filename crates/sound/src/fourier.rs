@@ -26,9 +26,9 @@ impl Fourier {
     }
 
     /// The transform of a signal, with zeros after it.
-    pub(crate) fn spectrum(&self, signal: &[f64]) -> Vec<Complex<f64>> {
+    pub(crate) fn spectrum<S: Copy + Into<f64>>(&self, signal: &[S]) -> Vec<Complex<f64>> {
         let (mut input, mut spectrum) = (self.forward.make_input_vec(), self.forward.make_output_vec());
-        input.iter_mut().zip(signal).for_each(|(input, sample)| *input = *sample);
+        input.iter_mut().zip(signal).for_each(|(input, sample)| *input = (*sample).into());
         // It fails for vectors of other lengths alone.
         let done = self.forward.process(&mut input, &mut spectrum);
         debug_assert!(done.is_ok());

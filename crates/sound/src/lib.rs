@@ -38,7 +38,8 @@
 //! direct sound in each channel (`direct`), which is the first of its ways (`paths`), and how well its time is known
 //! (`deviation`). A known `signal` is made a pulse (signal/compression.rs), whose time each channel tells
 //! alone (times/known.rs). Events begin with events/find.rs, those of recorders that were started apart with
-//! recorders/gathered.rs, and `listen` puts all together, watched by a `monitor`; `picture` draws them.
+//! recorders/gathered.rs, and `listen` puts all together, watched by a `monitor`; `picture` draws them. Several of
+//! these use `fourier`, `biquad`, `fade` and `quantile`.
 
 mod air;
 mod biquad;

@@ -92,7 +92,7 @@ impl Compression {
     }
 
     /// The spectrum of compressed samples, from the lowest frequency of the band on.
-    pub(crate) fn compressed(&self, samples: &[f64]) -> Vec<Complex64> {
+    pub(crate) fn compressed<S: Copy + Into<f64>>(&self, samples: &[S]) -> Vec<Complex64> {
         let spectrum = self.fourier.spectrum(samples);
         let band = spectrum.get(self.first..).unwrap_or_default();
         band.iter().zip(&self.values).map(|(value, filter)| value * filter).collect()

@@ -15,7 +15,7 @@ const LEAST: usize = 1 << 13;
 pub(crate) struct Stream {
     compression: Arc<Compression>,
     /// Samples from before the next that is to come out.
-    samples: Vec<f64>,
+    samples: Vec<f32>,
     /// Samples that are held before that, for what the filter has of the past.
     before: usize,
     /// How many samples of a part come out.
@@ -47,7 +47,7 @@ impl Stream {
         let mut left = samples;
         while !left.is_empty() {
             let (now, later) = left.split_at(left.len().min(length - self.samples.len()));
-            self.samples.extend(now.iter().map(|sample| f64::from(*sample)));
+            self.samples.extend_from_slice(now);
             left = later;
             if self.samples.len() == length {
                 self.compress(compressed, self.part);
@@ -98,8 +98,7 @@ mod tests {
         let all = compressed(samples.len());
         assert!(all.len() == samples.len() && all == compressed(1) && all == compressed(777));
         let whole = Compression::new(&signal, band, rate, samples.len()).unwrap().unwrap();
-        let doubles: Vec<f64> = samples.iter().map(|sample| f64::from(*sample)).collect();
-        let whole = whole.signal(whole.compressed(&doubles).into_iter());
+        let whole = whole.signal(whole.compressed(&samples).into_iter());
         let scale = whole.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let off = all.iter().zip(&whole).map(|(a, b)| (f64::from(*a) - b).abs()).fold(0.0, f64::max);
         assert!(off < 1e-2 * scale, "{off} of {scale}");

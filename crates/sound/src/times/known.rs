@@ -26,13 +26,12 @@ const NEAR: f64 = 2e-3;
 /// The arrival of a signal in a window, if it is there. The compression is that of the window's sample rate and length.
 pub(super) fn arrival(window: &Window<'_>, compression: &Compression) -> Option<Arrival> {
     let (rate, length) = (window.sample_rate, compression.fourier.length());
-    let samples: Vec<f64> = window.samples.iter().map(|sample| f64::from(*sample)).collect();
-    let values = compression.compressed(&samples);
+    let values = compression.compressed(window.samples);
     let wave = compression.signal(values.iter().copied());
     // A quarter of a period later.
     let other = compression.signal(values.iter().map(|value| value * -Complex64::i()));
     let size = |k: usize| wave[k].hypot(other[k]);
-    let envelope: Vec<f64> = (0..samples.len().min(length)).map(size).collect();
+    let envelope: Vec<f64> = (0..window.samples.len().min(length)).map(size).collect();
     let pulses = pulses(&envelope);
     let first = *pulses.first()?;
 
