@@ -37,7 +37,12 @@ pub(super) struct TargetTracking<'a> {
     pub(super) monitor: Monitor,
 }
 
-impl TargetTracking<'_> {
+impl<'a> TargetTracking<'a> {
+    /// Trackers of paths from the fibre.
+    pub(super) fn trackers(&self) -> Trackers<'a, poly::Interpreter> {
+        Trackers::from_solutions(&self.family.program, &self.fibre.parameters, &self.fibre.solutions)
+    }
+
     /// The solutions for a target from a fibre. Where paths are lost, detours are tried, and then shorter steps, as far
     /// as the limits allow.
     fn from(

@@ -178,7 +178,7 @@ impl<'a> Targets<'a> {
         if let Some(lead) = lead {
             lead.begin_part(&(), tracking.fibre.len());
         }
-        let (trackers, count) = (Trackers::new(&tracking.family.program), targets.len());
+        let (trackers, count) = (tracking.trackers(), targets.len());
         let (monitor, orbits) = (&tracking.monitor, orbits.as_ref());
         let results = Vec::with_capacity(count);
         let work = TargetWork {
@@ -212,7 +212,7 @@ impl<'a> Targets<'a> {
     fn serve(mut self, worker: &Worker<'_>) -> Result<(), FamilyError> {
         self.validate()?;
         let orbits = Orbits::of(self.tracking.family, self.tracking.fibre)?;
-        let trackers = Trackers::new(&self.tracking.family.program);
+        let trackers = self.tracking.trackers();
         while let Some(task) = worker.next::<()>()? {
             self.tracking.monitor = task.monitor.clone();
             let (tracking, targets) = (&self.tracking, &self.targets);

@@ -4,6 +4,7 @@ use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
 use super::stated::Stated;
 use super::tracking::{FibreMemory, FibreWork, PathTrackers};
+use crate::linalg::exchanges_at;
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refiner;
@@ -41,7 +42,7 @@ pub(super) fn track_fibre_led<E: Evaluate>(
     monitor: &Monitor,
     lead: Option<&Lead<'_>>,
 ) -> (PathSet, PathCounts) {
-    let mut tracker = FibreTracker::over(system, OneChart, PathTrackers::Threads(Trackers::new(system)), fibre);
+    let mut tracker = FibreTracker::on_all_threads(system, OneChart, fibre);
     tracker.monitor.clone_from(monitor);
     let (counts, _) = tracker.track_led(fibre, target, options, fibre.len(), |_| false, lead);
     (tracker.paths, counts)
@@ -97,7 +98,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// # Panics
     /// If the system does not have as many equations as unknowns.
     pub fn new(system: &'a E, charts: C, fibre: &Fibre) -> Self {
-        let tracker = Tracker::new(system, &TrackerOptions::default());
+        let exchanges = exchanges_at(system, &fibre.parameters, &fibre.solutions);
+        let tracker = Tracker::new(system, &TrackerOptions::default()).exchanging(exchanges);
         FibreTracker::over(system, charts, PathTrackers::One(Box::new(tracker)), fibre)
     }
 
@@ -107,7 +109,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// # Panics
     /// If the system does not have as many equations as unknowns.
     pub fn on_all_threads(system: &'a E, charts: C, fibre: &Fibre) -> Self {
-        FibreTracker::over(system, charts, PathTrackers::Threads(Trackers::new(system)), fibre)
+        let trackers = Trackers::from_solutions(system, &fibre.parameters, &fibre.solutions);
+        FibreTracker::over(system, charts, PathTrackers::Threads(trackers), fibre)
     }
 
     fn over(system: &'a E, charts: C, lanes: PathTrackers<'a, E>, fibre: &Fibre) -> Self {

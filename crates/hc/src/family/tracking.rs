@@ -176,7 +176,8 @@ where
 
     fn ends(&self, numbers: &[usize], round: Round) -> Vec<Self::End> {
         let fibre = self.fibre;
-        let lanes = PathTrackers::Threads(Trackers::new(self.system));
+        let trackers = Trackers::from_solutions(self.system, &fibre.parameters, &fibre.solutions);
+        let lanes = PathTrackers::Threads(trackers);
         let mut scratch = FibreMemory::new(self.system, lanes, fibre, numbers.len());
         let mut batch = PathSet::with_capacity(fibre.dimension, numbers.len());
         // The progress of a batch is told as a whole.

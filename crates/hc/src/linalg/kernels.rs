@@ -23,8 +23,8 @@ impl<S: Lane> Lu<S> {
         &mut self.factors
     }
 
-    /// Factors the [matrix](Self::matrix) in place, without exchanges of rows, whatever the pivots: for those
-    /// who judge the solutions.
+    /// Factors the [matrix](Self::matrix) in place, with no other [exchanges](Self::set_exchanges) of rows than in all
+    /// lanes, whatever the pivots: for those who judge the solutions.
     pub(crate) fn factor_in_order(&mut self) {
         let isa = self.isa;
         if self.structure.is_empty() {
@@ -91,7 +91,7 @@ impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
     }
 }
 
-/// Factors the column-major matrix `a` with exchanges of rows, or the one in place of the factors without.
+/// Factors the column-major matrix `a` with exchanges of rows in each lane, or the one in place of the factors without.
 struct Factor<'a, S: Lane, const SPARSE: bool, const EXCHANGE: bool> {
     lu: &'a mut Lu<S>,
     a: &'a [S],
@@ -104,7 +104,8 @@ impl<S: Lane, const SPARSE: bool, const EXCHANGE: bool> Kernel for Factor<'_, S,
 
     #[inline(always)]
     fn run(self) {
-        let Lu { n, factors, row_scale, pivots, moved, structure, pattern, .. } = self.lu;
+        let Lu { n, factors, row_scale, pivots, moved, structure, pattern, exchanges, exchanged, ordered, .. } =
+            self.lu;
         let n = *n;
         let f = &mut factors[..n * n];
         if EXCHANGE {
@@ -112,7 +113,13 @@ impl<S: Lane, const SPARSE: bool, const EXCHANGE: bool> Kernel for Factor<'_, S,
         }
 
         if SPARSE {
-            pattern.copy_from_slice(structure);
+            pattern.copy_from_slice(if EXCHANGE { structure } else { ordered });
+        }
+        *exchanged = !EXCHANGE && !exchanges.is_empty();
+        if *exchanged {
+            for column in f.chunks_exact_mut(n) {
+                exchanges.iter().for_each(|&[i, k]| column.swap(i, k));
+            }
         }
 
         let scale = &mut row_scale[..n];
@@ -244,6 +251,9 @@ impl<S: Lane, const SPARSE: bool, const NEGATED: bool> Kernel for Solve<'_, S, S
         let n = self.lu.n;
         let f = &self.lu.factors[..n * n];
         let b = &mut self.b[..n];
+        if self.lu.exchanged {
+            self.lu.exchanges.iter().for_each(|&[i, k]| b.swap(i, k));
+        }
         for k in (0..n).filter(|&k| self.lu.moved[k]) {
             for l in 0..S::LANES {
                 let i = self.lu.pivots[k * S::LANES + l] as usize;

@@ -23,6 +23,12 @@ pub(crate) struct Lu<S: Lane> {
     pub(super) structure: Vec<u64>,
     /// The rows of each column of the factors that are not always zero, a bit for each.
     pub(super) pattern: Vec<u64>,
+    /// Rows that are exchanged, one pair after the other, before a factorisation in order.
+    pub(super) exchanges: Vec<[usize; 2]>,
+    /// Whether they were exchanged in the matrix that is factored.
+    pub(super) exchanged: bool,
+    /// The structure after these exchanges.
+    pub(super) ordered: Vec<u64>,
 }
 
 /// Largest order of matrices whose zeros are left out.
@@ -42,6 +48,9 @@ impl<S: Lane> Lu<S> {
             moved: vec![false; n],
             structure: Vec::new(),
             pattern: Vec::new(),
+            exchanges: Vec::new(),
+            exchanged: false,
+            ordered: Vec::new(),
         }
     }
 
@@ -57,8 +66,21 @@ impl<S: Lane> Lu<S> {
         if (filled as f64) < DENSE_SHARE * (n * n) as f64 {
             lu.structure = (0..n).map(|j| rows(j).fold(0, |mask, i| mask | 1 << i)).collect();
             lu.pattern.clone_from(&lu.structure);
+            lu.ordered.clone_from(&lu.structure);
         }
         lu
+    }
+
+    /// Sets the rows that are exchanged before each later [factorisation in order](Self::factor_in_order).
+    pub(crate) fn set_exchanges(&mut self, exchanges: &[[usize; 2]]) {
+        self.exchanges = exchanges.to_vec();
+        self.ordered.clone_from(&self.structure);
+        for &[i, k] in exchanges {
+            for column in &mut self.ordered {
+                let differ = (*column >> i ^ *column >> k) & 1;
+                *column ^= differ << i | differ << k;
+            }
+        }
     }
 
     /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix
@@ -72,7 +94,15 @@ impl<S: Lane> Lu<S> {
     pub(crate) fn smallest_pivot_in_order(&self, l: usize, a: &[S], weights_sqr: &[S::Real]) -> f64 {
         let n = self.n;
         let size = |i: usize, j: usize| a[j * n + i].get(l).norm_sqr() * weights_sqr[j].as_ref()[l];
-        self.smallest(l, weights_sqr, |i| 1.0 / (0..n).map(|j| size(i, j)).fold(0.0, f64::max))
+        // The row of `a` that has come to a place.
+        let row = |place: usize| {
+            self.exchanges.iter().rev().fold(place, |at, &[i, k]| match at {
+                _ if at == i => k,
+                _ if at == k => i,
+                _ => at,
+            })
+        };
+        self.smallest(l, weights_sqr, |i| 1.0 / (0..n).map(|j| size(row(i), j)).fold(0.0, f64::max))
     }
 
     /// The smallest pivot, with rows multiplied by the square roots of `scale`.

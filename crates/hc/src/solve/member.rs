@@ -69,7 +69,8 @@ pub(crate) fn ends<E: Evaluate>(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> impl Iterator<Item = Vec<Complex64>> {
-    let ends = followed(&Trackers::new(family), fibre, target, &Excess::none(), options, monitor);
+    let trackers = Trackers::from_solutions(family, &fibre.parameters, &fibre.solutions);
+    let ends = followed(&trackers, fibre, target, &Excess::none(), options, monitor);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }

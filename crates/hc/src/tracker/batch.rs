@@ -16,6 +16,7 @@ use super::resume::{ResumePoint, ResumePoints};
 use super::valuation::valuation;
 use super::workspace::Workspace;
 use crate::homotopy::ParameterPath;
+use crate::linalg::RowExchanges;
 use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -45,6 +46,8 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     pub(super) rough: Vec<S>,
     pub(super) precise: Precise<E, S>,
     pub(super) valuations: Vec<f64>,
+    /// The rows that quick steps exchange in Jacobians.
+    pub(super) exchanges: RowExchanges,
     /// Made when quick steps are first asked for.
     pub(super) quick: Option<Box<QuickMemory<'a, E>>>,
     /// The paths that quick steps leave, and those that cannot go on from there.
@@ -79,6 +82,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             rough: zeros(),
             precise: Precise::new(system, isa),
             valuations: vec![0.0; n],
+            exchanges: RowExchanges::new(),
             quick: None,
             left: ResumePoints::default(),
             strayed: Vec::new(),
@@ -90,9 +94,14 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         if options.isa.unwrap_or_else(Isa::detect) == self.work.isa {
             self.bounds = Bounds::new(options);
         } else {
-            let monitor = self.monitor.clone();
-            *self = Tracker { monitor, ..Tracker::new(self.work.system, options) };
+            let (monitor, exchanges) = (self.monitor.clone(), std::mem::take(&mut self.exchanges));
+            *self = Tracker { monitor, exchanges, ..Tracker::new(self.work.system, options) };
         }
+    }
+
+    /// The tracker for paths whose Jacobians have pivots of good size once these rows are exchanged.
+    pub(crate) fn exchanging(self, exchanges: RowExchanges) -> Self {
+        Tracker { exchanges, ..self }
     }
 
     /// Sets the monitor that may stop later paths. The default monitor stops nothing.

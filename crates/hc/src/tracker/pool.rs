@@ -2,6 +2,7 @@
 
 use super::{PathEnd, PathSet, Tracker, TrackerOptions};
 use crate::homotopy::ParameterPath;
+use crate::linalg::{RowExchanges, exchanges_at};
 use crate::monitor::Monitor;
 // Without threads, iterators have `map` of their own.
 #[cfg(feature = "threads")]
@@ -20,13 +21,20 @@ const PARTS: usize = 4;
 /// that making a tracker for each would show.
 pub(crate) struct Trackers<'a, E: Evaluate> {
     system: &'a E,
+    /// The rows that quick steps exchange.
+    exchanges: RowExchanges,
     idle: Mutex<Vec<Tracker<'a, E, Lanes8>>>,
 }
 
 impl<'a, E: Evaluate> Trackers<'a, E> {
     /// A pool without trackers yet, for a square system.
     pub(crate) fn new(system: &'a E) -> Self {
-        Trackers { system, idle: Mutex::new(Vec::new()) }
+        Trackers { system, exchanges: RowExchanges::new(), idle: Mutex::new(Vec::new()) }
+    }
+
+    /// A pool without trackers yet, for paths from these solutions (`n` coordinates each) for the parameters `p`.
+    pub(crate) fn from_solutions(system: &'a E, p: &[Complex64], solutions: &[Complex64]) -> Self {
+        Trackers { system, exchanges: exchanges_at(system, p, solutions), idle: Mutex::new(Vec::new()) }
     }
 
     /// The system.
@@ -51,7 +59,8 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
             .into_par_iter()
             .map(|part| {
                 let idle = self.idle().pop();
-                let mut tracker = idle.unwrap_or_else(|| Tracker::new(self.system, options));
+                let mut tracker =
+                    idle.unwrap_or_else(|| Tracker::new(self.system, options).exchanging(self.exchanges.clone()));
                 tracker.set_options(options);
                 tracker.set_monitor(monitor);
                 let mut out = PathSet::new(n);

@@ -4,7 +4,7 @@
 //! whether the step is accepted and how long the next one is; the third catches what converges to another
 //! path. The next step is that for which `omega` times the predictor's error, which grows with the fourth
 //! power of the step, is `aim` of the tolerances, within the share of the radius of
-//! trust that the options allow. Rows are never exchanged, residuals never extended, and a path that needs
+//! trust that the options allow. Rows have one order for all, residuals are never extended, and a path that needs
 //! more is given up. A lane depends on no other.
 
 use super::super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh};
@@ -13,10 +13,10 @@ use super::super::resume::{ResumePoint, ResumePoints};
 use super::super::workspace::Workspace;
 use super::attempts::{QuickPath, Verdict};
 use crate::homotopy::ParameterPath;
+use crate::linalg::RowExchanges;
 use crate::monitor::Monitor;
 use crate::tolerances::QuickTolerances;
 use num_complex::Complex64;
-use poly::simd::Isa;
 use poly::{Evaluate, Lane, Singles16};
 
 /// Memory of quick steps, beside the tracker's own.
@@ -30,10 +30,13 @@ pub(in super::super) struct QuickMemory<'a, E: Evaluate> {
 }
 
 impl<'a, E: Evaluate> QuickMemory<'a, E> {
-    /// For the paths of a square system.
-    pub(super) fn new(system: &'a E, isa: Isa) -> Self {
+    /// For the paths of a square system, with rows exchanged in the workspaces of either precision.
+    pub(super) fn new<S: Lane>(doubles: &mut Workspace<'a, E, S>, exchanges: &RowExchanges) -> Self {
+        let mut singles = Workspace::new(doubles.system, doubles.isa);
+        singles.lu.set_exchanges(exchanges);
+        doubles.lu.set_exchanges(exchanges);
         QuickMemory {
-            singles: Workspace::new(system, isa),
+            singles,
             lanes: vec![QuickPath::idle(); Singles16::LANES],
             stops: ResumePoints::default(),
             again: Vec::new(),

@@ -22,10 +22,11 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         out: &mut PathSet,
         left: &mut ResumePoints,
     ) {
-        let (system, isa, n) = (self.work.system, self.work.isa, self.work.n);
+        let n = self.work.n;
         let (options, monitor) = (&self.bounds.options, &self.monitor);
-        let QuickMemory { singles, lanes, stops, again } =
-            &mut **self.quick.get_or_insert_with(|| Box::new(QuickMemory::new(system, isa)));
+        let (work, exchanges) = (&mut self.work, &self.exchanges);
+        let quick = self.quick.get_or_insert_with(|| Box::new(QuickMemory::new(work, exchanges)));
+        let QuickMemory { singles, lanes, stops, again } = &mut **quick;
         stops.clear();
         again.clear();
         stops.reserve(most, n);
@@ -37,7 +38,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         stops.list.sort_unstable_by(|a, b| b.t.total_cmp(&a.t).then(a.path.cmp(&b.path)));
 
         let lanes = &mut lanes[..S::LANES];
-        let second = QuickLanes { work: &mut self.work, lanes, options, monitor, tolerances: &QUICK, polishes: true };
+        let second = QuickLanes { work, lanes, options, monitor, tolerances: &QUICK, polishes: true };
         let (waiting, points) = (stops.list.iter(), &stops.points[..]);
         let mut finish = Finish { n, starts, waiting, points, again, out, left };
         second.run(path, &mut finish);

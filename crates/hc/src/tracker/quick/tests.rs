@@ -1,5 +1,6 @@
 //! Tests of quick steps.
 
+use crate::family::{Fibre, FibreOptions, FibreTracker, OneChart};
 use crate::homotopy::{ParameterPath, Segment};
 use crate::monitor::Monitor;
 use crate::tracker::resume::{Counts, ResumePoint};
@@ -60,6 +61,28 @@ fn all_roots_alone_and_among_others_to_the_same_bits() {
     let careful = ends::<Lanes8>([a, b], &TrackerOptions::fast(), &Monitor::default());
     for k in 0..12 {
         assert!((eight.point(k)[0] - careful.point(k)[0]).norm() < 1e-6, "path {k}");
+    }
+}
+
+/// The third equation knows nothing of the second unknown, and at solutions the derivative of the first by the
+/// first vanishes, `2 (x - z)`: quick steps need the rows in another order.
+#[test]
+fn rows_are_put_in_an_order_with_pivots() {
+    let text = "name = 'order'\nunknowns = ['x', 'y', 'z']\nparameters = ['a', 'b']\n\
+                equations = ['(x - z)^2 + y - b', 'x^12 - a', 'x - z']";
+    let program = parse::family(text).expect("a family").system.compile().expect("a program");
+    let root = |k: u32| Complex64::from_polar(1.0, f64::from(k) * std::f64::consts::TAU / 12.0);
+    let solutions = (0..12).flat_map(|k| [root(k), Complex64::from(0.0), root(k)]).collect();
+    let fibre = Fibre::new(START.map(Complex64::from).to_vec(), 3, solutions);
+    let options = FibreOptions { tracker: quick(), ..FibreOptions::default() };
+    let target = [Complex64::new(-3.0, 4.0), Complex64::new(0.5, -2.0)];
+    let mut tracker = FibreTracker::new(&program, OneChart, &fibre);
+    let counts = tracker.track(&fibre, &target, &options);
+    assert_eq!((counts.finite, counts.retracked), (12, 0));
+    for (result, x) in tracker.paths().iter() {
+        assert!((x[0].powi(12) - target[0]).norm() < 1e-12 && (x[1] - target[1]).norm() < 1e-12, "{x:?}");
+        // As above: quick steps alone.
+        assert_eq!(result.jacobians, 4 + 2 * result.accepted + result.rejected, "{result:?}");
     }
 }
 
