@@ -1,7 +1,6 @@
 //! The inner loop of the Schur complement, in the lanes of a vector unit.
 
 use hc::poly::simd::{Isa, Kernel};
-use std::array::from_fn;
 
 /// Entries of a column that are computed together.
 const LANES: usize = 8;
@@ -81,19 +80,32 @@ impl<const D: usize> Kernel for Eliminate<'_, D> {
 /// Takes off the rows of `N` transmitters, one after the other, so that the sums do not depend on how many go together.
 #[inline(always)]
 fn take_off<const D: usize, const N: usize>(schur: &mut [f64], size: usize, rows: &[f64]) {
-    let row = |t: usize, a: usize| &rows[(t * (D + 1) + a) * (size + ROOM)..][..size + ROOM];
+    let width = size + ROOM;
     for k in 0..size {
-        let lead: [[f64; D]; N] = from_fn(|t| from_fn(|a| row(t, a)[k]));
-        let end: [f64; N] = from_fn(|t| row(t, D)[k]);
+        // Loops, not closures: these are compiled with the instructions of the kernel.
+        let (mut lead, mut end, mut any) = ([[0.0; D]; N], [0.0; N], false);
+        for t in 0..N {
+            for a in 0..D {
+                lead[t][a] = rows[(t * (D + 1) + a) * width + k];
+                any |= lead[t][a] != 0.0;
+            }
+            end[t] = rows[(t * (D + 1) + D) * width + k];
+            any |= end[t] != 0.0;
+        }
         // Receivers that have no measurement.
-        if end.iter().chain(lead.as_flattened()).all(|&x| x == 0.0) {
+        if !any {
             continue;
         }
         // Lanes beyond the end of a column lie above the diagonal of the next one, and get zeros.
         let chunks = (size - k).div_ceil(LANES);
-        let of = |t: usize, a: usize| &row(t, a)[k..].as_chunks::<LANES>().0[..chunks];
-        let positions: [[&[[f64; LANES]]; D]; N] = from_fn(|t| from_fn(|a| of(t, a)));
-        let last: [&[[f64; LANES]]; N] = from_fn(|t| of(t, D));
+        let mut positions: [[&[[f64; LANES]]; D]; N] = [[&[]; D]; N];
+        let mut last: [&[[f64; LANES]]; N] = [&[]; N];
+        for t in 0..N {
+            for a in 0..D {
+                positions[t][a] = &rows[(t * (D + 1) + a) * width + k..].as_chunks().0[..chunks];
+            }
+            last[t] = &rows[(t * (D + 1) + D) * width + k..].as_chunks().0[..chunks];
+        }
         let column = &mut schur[k * size + k..].as_chunks_mut::<LANES>().0[..chunks];
         for (c, entries) in column.iter_mut().enumerate() {
             let mut now = *entries;

@@ -14,7 +14,10 @@ use crate::observations::Observations;
 use hc::Monitor;
 
 /// Receivers from which on the equations are factored, not inverted: some fifty times less work.
-const MANY: usize = 200;
+const MANY: usize = 16;
+
+/// Coordinates of receivers from which on factoring takes some time.
+const LONG: usize = 1000;
 
 /// Equations of all coordinates of the receivers and unknowns of clocks, with the motion of least size where they leave one
 /// open.
@@ -82,7 +85,7 @@ fn factor<const D: usize>(
             }
         }
     }
-    let Ok(factor) = apart(monitor, true, move || square.llt(Side::Lower))? else { return Ok(None) };
+    let Ok(factor) = apart(monitor, size >= LONG, move || square.llt(Side::Lower))? else { return Ok(None) };
     let pivots = (0..size).map(|k| factor.L()[(k, k)].powi(2));
     let (least, largest) =
         pivots.fold((f64::INFINITY, 0.0), |(least, most), x| (f64::min(least, x), f64::max(most, x)));

@@ -133,7 +133,7 @@ fn choose(
         None => None,
     };
     let mut test = raised.as_ref().map_or_else(DimensionTest::default, |raised| question.compare(&flat, raised));
-    if !(is_plain && !test.is_space()) {
+    if !is_plain || test.is_space() {
         match question.search_space(&flat, raised, test)? {
             Some((space, true)) => return Ok(Calibrated::Space(space)),
             Some((space, false)) => test = space.dimension_test.unwrap_or(test),

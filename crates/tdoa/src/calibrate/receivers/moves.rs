@@ -12,6 +12,7 @@ use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
 use crate::multilateration::{Sight, receiver as locate};
 use crate::network::Network;
+use crate::observations::Observation;
 use crate::points::{distance, minus};
 use hc::Monitor;
 
@@ -75,25 +76,46 @@ impl<const D: usize> Sights<D> {
 }
 
 impl<const D: usize> Fitting<'_, D> {
+    fn sights(&self, receiver: usize, network: &Network<D>) -> Sights<D> {
+        let own: Vec<&Observation> = self.observations.of_receiver(receiver).collect();
+        let sight = |o: &&Observation| Sight {
+            position: network.transmitters[o.transmitter],
+            length: o.length(network),
+            precision: o.precision,
+        };
+        Sights {
+            transmitters: own.iter().map(|o| o.transmitter).collect(),
+            all: own.iter().map(sight).collect(),
+            deviation: self.deviation,
+        }
+    }
+
+    /// Whether two places cost less than one by a share of what is no chance.
+    fn pays(&self, sights: &Sights<D>, split: &Split<D>, share: f64) -> bool {
+        let least = 0.5 * least_surprise(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
+        sights.place(&sights.all).is_none_or(|(_, cost)| cost - split.cost >= share * least)
+    }
+
+    /// Whether two places of a receiver among all others, where `network` has them, cost less than one by this share of what
+    /// is no chance.
+    pub(crate) fn shows_move(
+        &self,
+        receiver: usize,
+        network: &Network<D>,
+        share: f64,
+    ) -> Result<bool, CalibrateError<D>> {
+        let sights = self.sights(receiver, network);
+        Ok(sights.best(self.monitor)?.is_some_and(|split| self.pays(&sights, &split, share)))
+    }
+
     /// The move of a receiver that fits best, as two receivers beside the network of all others.
     /// `None` where one of its places may be chance.
     pub(crate) fn moved(&self, receiver: usize, alone: &Network<D>) -> Result<Option<Refit<D>>, CalibrateError<D>> {
         let own: Vec<_> = self.observations.of_receiver(receiver).collect();
-        let sights = Sights {
-            transmitters: own.iter().map(|o| o.transmitter).collect(),
-            all: (own.iter())
-                .map(|o| Sight {
-                    position: alone.transmitters[o.transmitter],
-                    length: o.length(alone),
-                    precision: o.precision,
-                })
-                .collect(),
-            deviation: self.deviation,
-        };
+        let sights = self.sights(receiver, alone);
         let Some(split) = sights.best(self.monitor)? else { return Ok(None) };
         // Two places have to cost less than one, before all nodes are fitted to them.
-        let least = 0.5 * least_surprise(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
-        if sights.place(&sights.all).is_some_and(|(_, cost)| cost - split.cost < least) {
+        if !self.pays(&sights, &split, 1.0) {
             return Ok(None);
         }
         let from = sights.transmitters[split.at];

@@ -23,6 +23,10 @@ use crate::refine::{NetworkRefiner, Projection, RefineOptions, SEARCH, dot};
 use hc::Monitor;
 use std::array::from_fn;
 
+/// The share of what an error gains at least that it gains against all others where they are, of more than [`TRIED`]
+/// receivers: one bends the others little.
+const SHOWN: f64 = 0.5;
+
 /// Jumps of one receiver that are tried.
 const JUMPS: usize = 24;
 
@@ -93,6 +97,12 @@ pub(crate) fn refits<const D: usize>(
         check(monitor)?;
         // One gross error alone is no move.
         let may_have_moved = given_up[receiver] > 1 || of(receiver).count() > 0;
+        if observations.receivers > TRIED
+            && of(receiver).count() == 0
+            && !fitting.shows_error(receiver, may_have_moved)?
+        {
+            continue;
+        }
         let mut fits = fitting.receiver(receiver, may_have_moved)?;
         for suspect in of(receiver).filter(|suspect| suspect.kind != ReceiverErrorKind::Move) {
             fits.extend(fitting.joint(base.clone(), Fault { size: [0.0; D], ..*suspect })?);
@@ -129,6 +139,20 @@ struct Joint<const D: usize> {
 }
 
 impl<const D: usize> Fitting<'_, D> {
+    /// Whether a receiver shows an error against all others where they are.
+    fn shows_error(&self, receiver: usize, may_have_moved: bool) -> Result<bool, CalibrateError<D>> {
+        let local = Local::new(self.observations, self.base, receiver, self.deviation);
+        let without = local.cost();
+        let shows = |located: LocatedFault<D>| {
+            let tests = tests(located.fault.kind, self.observations.receivers, self.observations.len());
+            without - located.cost >= SHOWN * (least_gain(tests) - doubt())
+        };
+        if local.all().into_iter().flatten().any(shows) {
+            return Ok(true);
+        }
+        Ok(may_have_moved && self.shows_move(receiver, self.base, SHOWN)?)
+    }
+
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
     fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Refit<D>>, CalibrateError<D>> {
         let others = self.observations.subset(|o| o.receiver != receiver);
@@ -142,11 +166,7 @@ impl<const D: usize> Fitting<'_, D> {
         }
         let moved = if may_have_moved { self.moved(receiver, &alone)? } else { None };
         let local = Local::new(self.observations, &alone, receiver, self.deviation);
-        let starts = [
-            local.locate(Fault::new(receiver, ReceiverErrorKind::Delay, 0)),
-            local.locate(Fault::new(receiver, ReceiverErrorKind::Drift, 0)),
-            local.jump(),
-        ];
+        let starts = local.all();
         check(self.monitor)?;
         let fitted = starts
             .into_iter()
@@ -315,6 +335,22 @@ impl<const D: usize> Local<D> {
             transmitters: observations.transmitters,
             deviation,
         }
+    }
+
+    /// Truncated cost of its measurements where it is, without an error.
+    fn cost(&self) -> f64 {
+        let residual =
+            |(_, s, length, precision): &(usize, [f64; D], f64, f64)| (length - distance(self.start, *s)) * precision;
+        self.sights.iter().map(|sight| truncated(residual(sight) / self.deviation)).sum()
+    }
+
+    /// Located with an error of each kind, but for a move.
+    fn all(&self) -> [Option<LocatedFault<D>>; 3] {
+        [
+            self.locate(Fault::new(self.receiver, ReceiverErrorKind::Delay, 0)),
+            self.locate(Fault::new(self.receiver, ReceiverErrorKind::Drift, 0)),
+            self.jump(),
+        ]
     }
 
     /// The jump that fits best.
