@@ -74,6 +74,7 @@ mod inverse;
 mod linalg;
 mod mixed;
 mod monitor;
+mod moving;
 pub mod random;
 pub mod ranks;
 pub mod refine;

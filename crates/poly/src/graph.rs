@@ -291,6 +291,17 @@ impl Graph {
         }
     }
 
+    /// The same formulas with parameter `place[i]` in place of parameter `i`; no two places are equal.
+    pub(crate) fn renumbered(mut self, place: &[u32]) -> Graph {
+        for node in &mut self.nodes {
+            if let Node::Parameter(k) = node {
+                *k = place[*k as usize];
+            }
+        }
+        self.index = self.nodes.iter().map(|node| node.key()).zip(0..).collect();
+        self
+    }
+
     /// Marks every node that the roots depend on.
     pub(crate) fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
         let mut seen = vec![false; self.len()];

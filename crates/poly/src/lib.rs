@@ -31,6 +31,7 @@
 //! | [`Formula`], [`System::new`] | formulas that own their parts |
 //! | [`System::expand`] | sparse [`Polynomial`]s, within [`ExpandLimits`] |
 //! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
+//! | [`Split`] | a family along a line of its parameters, with fewer operations |
 //! | [`SparseSystem`] | a system of fixed supports, with the coefficients as parameters |
 //! | `program::emit`, with the feature `emit` | the program as Rust source |
 //!
@@ -66,6 +67,7 @@ mod polynomial;
 mod rational;
 mod singles;
 mod sparse;
+mod split;
 mod system;
 mod wording;
 
@@ -97,5 +99,6 @@ pub use scalar::{Lane, Scalar};
 pub use simd::Isa;
 pub use singles::Singles16;
 pub use sparse::{SparseMemory, SparseSystem, SupportError};
+pub use split::Split;
 pub use system::{System, SystemError};
 pub use wording::{counted, one_or};

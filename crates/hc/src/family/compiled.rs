@@ -15,9 +15,10 @@ use crate::refine::Refiner;
 use crate::solve::Solutions;
 use crate::tolerances::families;
 use num_complex::Complex64;
-use poly::{Evaluate, Interpreter, Isa, System};
+use poly::{Evaluate, Interpreter, Isa, Split, System};
 use serde::Serialize;
 use std::str::FromStr;
+use std::sync::OnceLock;
 
 /// A compiled parameter family: its equations, the factors that must not vanish at its solutions,
 /// and its symmetries.
@@ -47,6 +48,8 @@ pub struct Family {
     pub(super) given: poly::Family,
     /// The equations that are tracked, as many as unknowns.
     pub(super) program: Interpreter,
+    /// These equations with less to do along a path, if there is a way; made when paths are first tracked.
+    split: OnceLock<Option<Split>>,
     /// All equations, if these are more.
     pub(super) overdetermined: Option<Overdetermined>,
     pub(super) nonzero: Interpreter,
@@ -71,7 +74,7 @@ impl Family {
             return Err(FamilyError::Symmetry { map: k + 1, found: family.symmetry[k].len(), unknowns });
         }
         let symmetry = Symmetry::new(&family.system, &family.symmetry)?;
-        Ok(Family { given: family, program, overdetermined, nonzero, symmetry })
+        Ok(Family { given: family, program, split: OnceLock::new(), overdetermined, nonzero, symmetry })
     }
 
     /// A family of equations in these unknowns and parameters. A [`poly::Family`] can state more.
@@ -111,6 +114,11 @@ impl Family {
     /// [`accepts`](Self::accepts) tells.
     pub fn program(&self) -> &Interpreter {
         &self.program
+    }
+
+    /// The program with its parts that know no unknowns as parameters, if that makes it shorter.
+    pub(super) fn split(&self) -> Option<&Split> {
+        self.split.get_or_init(|| Split::new(self.square(), &self.program)).as_ref()
     }
 
     /// Whether the regular solution `x` of the [program](Self::program) (one entry per unknown) for the parameters `p`

@@ -12,6 +12,7 @@ use super::track::{moved as moved_fibre, track_fibre};
 use super::verdict::Verdict;
 use crate::distinct::{coincidences, is_real};
 use crate::monitor::Monitor;
+use crate::moving::MovingTrackers;
 use crate::random::{Random, Stream};
 use crate::solve::{Solution, Solutions, SolveOptions, Stray, solve_member};
 // One thread needs no trait for `map`.
@@ -20,6 +21,7 @@ use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
+use poly::Interpreter;
 use std::time::Duration;
 
 /// How a fibre is tracked again as long as paths are lost: by the detours of these numbers, and then straight, with
@@ -37,21 +39,25 @@ pub(super) struct TargetTracking<'a> {
     pub(super) monitor: Monitor,
 }
 
+/// Trackers of the equations as they are given, and of those that are split, if that saves operations.
+pub(super) struct FamilyTrackers<'a> {
+    given: Trackers<'a, Interpreter>,
+    moving: Option<MovingTrackers<'a>>,
+}
+
 impl<'a> TargetTracking<'a> {
     /// Trackers of paths from the fibre.
-    pub(super) fn trackers(&self) -> Trackers<'a, poly::Interpreter> {
-        Trackers::from_solutions(&self.family.program, &self.fibre.parameters, &self.fibre.solutions)
+    pub(super) fn trackers(&self) -> FamilyTrackers<'a> {
+        let (p, solutions) = (&self.fibre.parameters, &self.fibre.solutions);
+        FamilyTrackers {
+            given: Trackers::from_solutions(&self.family.program, p, solutions),
+            moving: self.family.split().map(|split| MovingTrackers::new(split, p, solutions)),
+        }
     }
 
     /// The solutions for a target from a fibre. Where paths are lost, detours are tried, and then shorter steps, as far
     /// as the limits allow.
-    fn from(
-        &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
-        fibre: &Fibre,
-        target: &[Complex64],
-        monitor: &Monitor,
-    ) -> Solutions {
+    fn from(&self, trackers: &FamilyTrackers<'_>, fibre: &Fibre, target: &[Complex64], monitor: &Monitor) -> Solutions {
         let (system, given) = (&self.family.program, &self.options.paths);
         let solve = |from: &Fibre, retries: u32, again: usize| {
             let paths = FibreOptions { retries, again: Some(again), ..given.clone() };
@@ -59,7 +65,8 @@ impl<'a> TargetTracking<'a> {
             let systems = [self.family.system(), self.family.square()];
             let misses = |x: &[Complex64]| matches!(self.family.verdict(target, x), Verdict::Misses(_));
             let stray = self.family.overdetermined.as_ref().map(|_| &misses as &Stray<'_>);
-            let mut found = solve_member(systems, trackers, from, target, stray, &options, monitor);
+            let FamilyTrackers { given, moving } = trackers;
+            let mut found = solve_member(systems, (given, moving.as_ref()), from, target, stray, &options, monitor);
             self.family.keep_own(target, &mut found);
             self.family.keep_solving(target, &mut found);
             found
@@ -99,12 +106,7 @@ impl<'a> TargetTracking<'a> {
     }
 
     /// The solutions for one target; `None` if the work was cancelled before.
-    fn solve(
-        &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
-        orbits: Option<&Orbits>,
-        target: &[Complex64],
-    ) -> Option<Solutions> {
+    fn solve(&self, trackers: &FamilyTrackers<'_>, orbits: Option<&Orbits>, target: &[Complex64]) -> Option<Solutions> {
         if self.monitor.is_cancelled() {
             return None;
         }
@@ -129,7 +131,7 @@ impl<'a> TargetTracking<'a> {
     /// The solutions for some of the targets, with their numbers, up to the first that was not begun.
     pub(super) fn solved(
         &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
+        trackers: &FamilyTrackers<'_>,
         orbits: Option<&Orbits>,
         targets: &[Vec<Complex64>],
         numbers: &[usize],

@@ -3,7 +3,7 @@
 use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions, TargetLimits};
-use super::target::{Orbits, TargetTracking};
+use super::target::{FamilyTrackers, Orbits, TargetTracking};
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::ranks::{DividedWork, Lead, Shareable, Worker};
@@ -13,7 +13,6 @@ use crate::solve::{Solutions, SolveOptions};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use crate::tracker::Trackers;
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -225,7 +224,7 @@ impl<'a> Targets<'a> {
 /// Every target, each solved for itself.
 struct TargetWork<'r, 'a, T, F> {
     tracking: &'r TargetTracking<'a>,
-    trackers: Trackers<'r, poly::Interpreter>,
+    trackers: FamilyTrackers<'r>,
     orbits: Option<&'r Orbits>,
     targets: &'r [Vec<Complex64>],
     enough: Option<Box<Enough<'a>>>,

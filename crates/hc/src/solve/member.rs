@@ -10,6 +10,7 @@ use super::singular_ends::work;
 use super::solutions::{Member, Solutions};
 use crate::family::{Fibre, Limit};
 use crate::monitor::Monitor;
+use crate::moving::MovingTrackers;
 use crate::singular::ExactEquations;
 use crate::start::PathSystem;
 use crate::tracker::Trackers;
@@ -21,11 +22,11 @@ use std::borrow::Cow;
 /// The isolated solutions of the member of a family at the parameters `target`, from those at the
 /// parameters of `fibre`, all of which are tracked. `trackers` belong to the second system, which is square: the family,
 /// or combinations of it that have all its solutions. Regular ends are solutions of these, and paths to the `stray` ones
-/// are tracked again; singular ends are judged by the family. The result does not know its member yet
-/// ([`Solutions::of_member`]).
-pub(crate) fn solve_member<E: Evaluate>(
+/// are tracked again; singular ends are judged by the family. `moving` tracks with fewer operations up to where the
+/// endgame begins. The result does not know its member yet ([`Solutions::of_member`]).
+pub(crate) fn solve_member<'e, E: Evaluate>(
     systems: [&System; 2],
-    trackers: &Trackers<'_, E>,
+    (trackers, moving): (&Trackers<'e, E>, Option<&MovingTrackers<'e>>),
     fibre: &Fibre,
     target: &[Complex64],
     stray: Option<&Stray<'_>>,
@@ -33,7 +34,7 @@ pub(crate) fn solve_member<E: Evaluate>(
     monitor: &Monitor,
 ) -> Solutions {
     let excess = &Excess::with_stray(stray);
-    let ends = followed(trackers, fibre, target, excess, options, monitor);
+    let ends = followed(trackers, moving, fibre, target, excess, options, monitor);
     let expanded = if !ends.singular.is_empty() { expanded(systems, target, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
@@ -70,14 +71,15 @@ pub(crate) fn ends<E: Evaluate>(
     monitor: &Monitor,
 ) -> impl Iterator<Item = Vec<Complex64>> {
     let trackers = Trackers::from_solutions(family, &fibre.parameters, &fibre.solutions);
-    let ends = followed(&trackers, fibre, target, &Excess::none(), options, monitor);
+    let ends = followed(&trackers, None, fibre, target, &Excess::none(), options, monitor);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }
 
 /// Where the paths from all solutions of a fibre end.
-fn followed<E: Evaluate>(
-    trackers: &Trackers<'_, E>,
+fn followed<'e, E: Evaluate>(
+    trackers: &Trackers<'e, E>,
+    moving: Option<&MovingTrackers<'e>>,
     fibre: &Fibre,
     target: &[Complex64],
     excess: &Excess<'_>,
@@ -88,6 +90,7 @@ fn followed<E: Evaluate>(
     follow(
         Route {
             trackers,
+            moving,
             start: fibre,
             count,
             target,

@@ -11,6 +11,7 @@ use crate::distinct::{coincidences, groups, relative_distance};
 use crate::endgame::Ending;
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
+use crate::moving::{MovingParts, MovingTrackers};
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refined;
 use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
@@ -18,7 +19,7 @@ use crate::start::Source;
 use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
-use poly::Evaluate;
+use poly::{Evaluate, Interpreter};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -44,6 +45,8 @@ const IRREGULAR: usize = 8;
 /// What the paths follow, and how.
 pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) trackers: &'a Trackers<'e, E>,
+    /// How paths are tracked up to the endgame with fewer operations, if there is a way.
+    pub(super) moving: Option<&'a MovingTrackers<'e>>,
     pub(super) start: &'a S,
     /// Number of paths.
     pub(super) count: usize,
@@ -88,6 +91,8 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
 pub(super) struct CoefficientStage<'a, 'e, E: Evaluate, S> {
     pub(super) route: Route<'a, 'e, E, S>,
     pub(super) segment: Segment,
+    /// The same segment for the trackers with fewer operations.
+    pub(super) moving: Option<(&'a Trackers<'e, Interpreter>, MovingParts<'e>)>,
     trial: bool,
     ends: Ends,
     /// Numbers of directions to infinity: of their valuations and winding numbers.
@@ -188,8 +193,11 @@ impl<'a, 'e, E: Evaluate, S: Source<E>> CoefficientStage<'a, 'e, E, S> {
     /// Before anything is tracked.
     pub(super) fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
         let count = route.count;
+        let segment = Segment::new(route.start.parameters(), route.target);
+        let moving = route.moving.map(|moving| (moving.trackers(), moving.along(segment.clone())));
         CoefficientStage {
-            segment: Segment::new(route.start.parameters(), route.target),
+            segment,
+            moving,
             route,
             trial,
             ends: Ends::new(count),

@@ -52,6 +52,7 @@ impl Surroundings {
             monitor,
             record: None,
             lead: None,
+            moving: None,
             has_other_ways: true,
         }
     }

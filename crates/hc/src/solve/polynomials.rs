@@ -185,6 +185,7 @@ fn serve_all(
             monitor,
             record: None,
             lead: None,
+            moving: None,
             has_other_ways: true,
         };
         serve(worker, &task, route)?;
@@ -228,7 +229,19 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
             let record = context.checkpoint.map(|checkpoint| Part { checkpoint, number });
             let (count, target, options) = (from.paths, &from.target[..], &*options);
             follow(
-                Route { trackers, start, count, target, excess, options, monitor, record, lead, has_other_ways: true },
+                Route {
+                    trackers,
+                    moving: None,
+                    start,
+                    count,
+                    target,
+                    excess,
+                    options,
+                    monitor,
+                    record,
+                    lead,
+                    has_other_ways: true,
+                },
                 trial,
             )
         };

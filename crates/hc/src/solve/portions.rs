@@ -54,7 +54,11 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         monitor.add(self.round.done as u64, self.round.regular as u64);
         let tracker = TrackerOptions { endgame_start: 0.0, min_t: self.endgame(round).start, ..settings };
         let all: Vec<usize> = (0..reached.numbers.len()).collect();
-        let paths = trackers.track(&self.segment, &reached.points, &all, &tracker, monitor);
+        let points = &reached.points;
+        let paths = match &self.moving {
+            Some((trackers, path)) => trackers.track(path, points, &all, &tracker, monitor),
+            None => trackers.track(&self.segment, points, &all, &tracker, monitor),
+        };
         let ends: Vec<Ending> = (0..paths.len())
             .into_par_iter()
             .with_min_len(LEAST)

@@ -34,7 +34,12 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
 
     /// A pool without trackers yet, for paths from these solutions (`n` coordinates each) for the parameters `p`.
     pub(crate) fn from_solutions(system: &'a E, p: &[Complex64], solutions: &[Complex64]) -> Self {
-        Trackers { system, exchanges: exchanges_at(system, p, solutions), idle: Mutex::new(Vec::new()) }
+        Trackers::exchanging(system, exchanges_at(system, p, solutions))
+    }
+
+    /// A pool without trackers yet, whose quick steps exchange these rows.
+    pub(crate) fn exchanging(system: &'a E, exchanges: RowExchanges) -> Self {
+        Trackers { system, exchanges, idle: Mutex::new(Vec::new()) }
     }
 
     /// The system.

@@ -40,9 +40,20 @@ impl Program {
     /// # Errors
     /// If a formula divides by the constant zero or the program would be too long.
     pub fn new(system: &System) -> Result<Program, CompileError> {
-        let (graph, roots) = &collect(&system.arena.graph, &system.equations);
+        let (variables, parameters) = (system.variables().len(), system.parameters().len());
+        Program::of_graph(&system.arena.graph, &system.equations, variables, parameters)
+    }
+
+    /// The program of formulas in so many unknowns and parameters.
+    pub(crate) fn of_graph(
+        graph: &Graph,
+        roots: &[Id],
+        variables: usize,
+        parameters: usize,
+    ) -> Result<Program, CompileError> {
+        let (graph, roots) = &collect(graph, roots);
         check_divisions(graph, roots)?;
-        let (equations, variables) = (roots.len(), system.variables().len());
+        let equations = roots.len();
 
         let mut builder = Builder::default();
         let operands = builder.lower(graph, roots);
@@ -65,7 +76,7 @@ impl Program {
                 constants = forward_constants;
             }
         }
-        Ok(Program { equations, variables, parameters: system.parameters().len(), constants, values, jacobian })
+        Ok(Program { equations, variables, parameters, constants, values, jacobian })
     }
 }
 

@@ -36,6 +36,13 @@ impl Interpreter {
         Interpreter { compiled: Arc::new(Compiled { program, tables }) }
     }
 
+    /// About how many products a step of the tracker takes: two Jacobians, two evaluations, the Taylor coefficients,
+    /// where the parameters move on a `straight` line or not.
+    pub(crate) fn work_of_step(&self, straight: bool) -> usize {
+        let Compiled { program, tables } = &*self.compiled;
+        2 * (program.jacobian_operations() + program.value_operations()) + tables.taylor.work(straight)
+    }
+
     /// The program that this interpreter runs.
     pub fn program(&self) -> &Program {
         &self.compiled.program

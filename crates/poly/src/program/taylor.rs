@@ -107,6 +107,31 @@ impl TaylorTape {
         }
     }
 
+    /// About how many products all coefficients of orders 0 to 3 take, where the parameters move on a straight line or
+    /// not; a sum counts as half a product.
+    pub(crate) fn work(&self, straight: bool) -> usize {
+        let products = |kind: u8| match kind {
+            UNKNOWNS => 8,
+            BY_LINEAR if straight => 10,
+            LINEAR_BY_UNKNOWN if straight => 7,
+            LINEARS if straight => 6,
+            BY_UNKNOWN | LINEAR_BY_UNKNOWN => 11,
+            _ => 14,
+        };
+        let work = |code: &TaylorCode| match code.op {
+            Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::MulRealAdd => 3,
+            Op::Mul | Op::MulAdd | Op::MulSub | Op::SubMul => products(code.kind),
+            Op::MulMulAdd | Op::MulMulSub => 2 * products(code.kind),
+            Op::Sqr => products(code.kind) * 2 / 3,
+            Op::Inv => products(GENERAL),
+        };
+        [&self.parameters_only, &self.variables_only, &self.mixed]
+            .into_iter()
+            .flat_map(|codes| codes.iter())
+            .map(work)
+            .sum()
+    }
+
     /// Resident coefficients, with those of the constants in place.
     pub(crate) fn memory<S: Scalar>(&self, isa: Isa, constants: &[S]) -> TaylorMemory<S> {
         let zero = || [S::zero(), S::zero(), S::zero(), S::zero()];
