@@ -8,7 +8,7 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use serde::Serialize;
-use sound::{ChannelSurvey, Heard, ListenOptions, SampleFormat, Signal, listen as hear, survey, write_wav};
+use sound::{Heard, ListenOptions, SampleFormat, Signal, listen as hear, write_wav};
 
 /// ListenSettings as Python gives them.
 #[derive(FromPyObject)]
@@ -52,7 +52,6 @@ impl ListenSettings {
 /// What was heard, in the form of the program's JSON, and the list of arrivals.
 #[derive(Serialize)]
 struct Report {
-    survey: Vec<ChannelSurvey>,
     names: Vec<String>,
     recorder_names: Vec<String>,
     warnings: Vec<String>,
@@ -73,15 +72,13 @@ pub(crate) fn listen<'py>(
     guarded(|| {
         let options = settings.options()?;
         let Done { result, stopped, .. } = run(py, &how, move |_| {
-            let survey = survey(recorders.iter().flatten()).map_err(Failure::input)?;
             let heard = hear(&recorders, &options).map_err(Failure::input)?;
             json::text(&Report {
                 names: heard.names(),
                 recorder_names: heard.recorder_names(),
-                warnings: heard.warnings(&survey),
+                warnings: heard.warnings(),
                 counts: heard.counts(),
                 list: heard.list(),
-                survey,
                 heard,
             })
         })?;

@@ -63,7 +63,6 @@ pub struct Heard {
     /// When each recorder was started, and which ones cannot be told: their channels have no arrivals.
     pub alignment: Alignment,
     /// What there is in each channel, as [`survey`](crate::survey) says it.
-    #[serde(skip)]
     pub survey: Vec<ChannelSurvey>,
     /// Files of a recorder that seem not to have begun together.
     #[serde(skip)]
@@ -221,13 +220,13 @@ impl Heard {
         self.recorders.iter().map(|&recorder| names.get(recorder).cloned().unwrap_or_default()).collect()
     }
 
-    /// What may be wrong, in words: with channels, of which this is the [survey](crate::survey) over all files, with files of a
-    /// recorder that seem not to have begun together, with recorders that cannot be aligned, and sounds that were left out.
-    pub fn warnings(&self, survey: &[ChannelSurvey]) -> Vec<String> {
+    /// What may be wrong, in words: with channels, with files of a recorder that seem not to have begun together, with
+    /// recorders that cannot be aligned, and sounds that were left out.
+    pub fn warnings(&self) -> Vec<String> {
         let of_channel = |(name, channel): (String, &ChannelSurvey)| {
             channel.problems().into_iter().map(move |problem| format!("channel {name} {problem}"))
         };
-        let mut all: Vec<String> = self.names().into_iter().zip(survey).flat_map(of_channel).collect();
+        let mut all: Vec<String> = self.names().into_iter().zip(&self.survey).flat_map(of_channel).collect();
         all.extend(self.apart.iter().map(ToString::to_string));
         all.extend(self.alignment.unaligned.iter().map(ToString::to_string));
         all.extend(self.events.dropped.iter().map(ToString::to_string));
@@ -320,11 +319,11 @@ mod tests {
         assert!(errors[78] < 30e-6 && errors[40] < 2e-6, "{} {}", errors[78], errors[40]);
         assert_eq!(heard.list().lines().count(), 81);
         assert_eq!(heard.counts(), "10 channels heard 80 sounds; 8 events with 80 arrivals, 0 sounds left out");
-        let mut survey = heard.survey.clone();
-        assert_eq!(survey, crate::survey(&paths).unwrap());
-        assert!(heard.warnings(&survey).is_empty());
-        (survey[3].is_constant, survey[7].clipped) = (true, 0.02);
-        let warnings = heard.warnings(&survey);
+        assert_eq!(heard.survey, crate::survey(&paths).unwrap());
+        assert!(heard.warnings().is_empty());
+        let mut heard = heard;
+        (heard.survey[3].is_constant, heard.survey[7].clipped) = (true, 0.02);
+        let warnings = heard.warnings();
         assert!(
             warnings[0].starts_with("channel left:4 is silent") && warnings[1].contains("right:3 is clipped in 2.0 %")
         );

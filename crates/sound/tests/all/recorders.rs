@@ -160,7 +160,7 @@ fn files_that_follow_one_another_are_not_taken_side_by_side_in_silence() {
             write_wav(path, made.sample_rate, &channels, SampleFormat::Int16).unwrap();
         }
         let heard = heard(&[paths.to_vec()]);
-        let mut warnings = heard.warnings(&heard.survey);
+        let mut warnings = heard.warnings();
         warnings.retain(|warning| warning.contains("join them"));
         warnings
     };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use sound::{ChannelSurvey, Heard, ListenError, ListenMonitor, ListenOptions, listen_watched, survey};
+use sound::{Heard, ListenError, ListenMonitor, ListenOptions, listen_watched};
 use tdoa::Pseudoranges;
 use tdoa::read::{self, Units};
 
@@ -12,8 +12,6 @@ use crate::{Failure, interrupt};
 /// What was heard in recordings.
 #[derive(Serialize)]
 pub(crate) struct Recordings {
-    /// What there is in each channel.
-    pub(super) survey: Vec<ChannelSurvey>,
     /// Name of each channel.
     pub(super) names: Vec<String>,
     /// The speed of sound that was taken, metres per second.
@@ -38,16 +36,12 @@ impl Recordings {
             let progress = monitor.progress();
             (progress.done, progress.total, "samples are read".to_string())
         };
-        let (survey, heard) = cli::bar::while_shown(threads, describe, || {
-            // What is wrong with a file is said before the work.
-            let survey = survey(files.iter().flatten()).map_err(Failure::unusable)?;
-            let heard = listen_watched(&files, options, &monitor).map_err(|error| match error {
-                ListenError::Stopped => Failure::Interrupted,
-                error => Failure::unusable(error),
-            })?;
-            Ok((survey, heard))
-        })??;
-        Ok(Recordings { survey, names: heard.names(), speed, heard, files })
+        let heard = cli::bar::while_shown(threads, describe, || listen_watched(&files, options, &monitor))?;
+        let heard = heard.map_err(|error| match error {
+            ListenError::Stopped => Failure::Interrupted,
+            error => Failure::unusable(error),
+        })?;
+        Ok(Recordings { names: heard.names(), speed, heard, files })
     }
 
     /// Says what was heard, and what is wrong with it.
@@ -77,7 +71,7 @@ impl Recordings {
 
     /// What is wrong with channels, sounds that were left out, and recorders that cannot be told.
     pub(super) fn warnings(&self) -> Vec<String> {
-        self.heard.warnings(&self.survey)
+        self.heard.warnings()
     }
 
     /// How many sounds were heard, in words.
@@ -88,13 +82,14 @@ impl Recordings {
     /// The table of the channels: headings, whether these are of text, and rows.
     pub(super) fn channels(&self) -> ([(&'static str, bool); 8], Vec<Vec<String>>) {
         let headings = ["channel", "seconds", "Hz", "peak", "heard", "used", "echoes", "left out"];
-        let rows =
-            self.names.iter().zip(&self.survey).zip(&self.heard.events.channels).map(|((name, survey), heard)| {
+        let rows = self.names.iter().zip(&self.heard.survey).zip(&self.heard.events.channels).map(
+            |((name, survey), heard)| {
                 let counts = [heard.heard, heard.used, heard.echoes, heard.dropped].map(|count| count.to_string());
                 let of_file =
                     [format!("{:.1}", survey.seconds), survey.sample_rate.to_string(), format!("{:.3}", survey.peak)];
                 [vec![name.clone()], of_file.to_vec(), counts.to_vec()].concat()
-            });
+            },
+        );
         (headings.map(|heading| (heading, heading == "channel")), rows.collect())
     }
 
