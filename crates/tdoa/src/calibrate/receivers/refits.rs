@@ -25,7 +25,7 @@ use std::array::from_fn;
 
 /// The share of what an error gains at least that it gains against all others where they are, of more than [`TRIED`]
 /// receivers: one bends the others little.
-const SHOWN: f64 = 0.5;
+const SHOWN: f64 = 0.75;
 
 /// Jumps of one receiver that are tried.
 const JUMPS: usize = 24;
@@ -97,10 +97,7 @@ pub(crate) fn refits<const D: usize>(
         check(monitor)?;
         // One gross error alone is no move.
         let may_have_moved = given_up[receiver] > 1 || of(receiver).count() > 0;
-        if observations.receivers > TRIED
-            && of(receiver).count() == 0
-            && !fitting.shows_error(receiver, may_have_moved)?
-        {
+        if fitting.are_many() && of(receiver).count() == 0 && !fitting.shows_error(receiver, may_have_moved)? {
             continue;
         }
         let mut fits = fitting.receiver(receiver, may_have_moved)?;
@@ -139,18 +136,24 @@ struct Joint<const D: usize> {
 }
 
 impl<const D: usize> Fitting<'_, D> {
+    /// Whether one receiver bends the others little.
+    fn are_many(&self) -> bool {
+        self.observations.receivers > TRIED
+    }
+
     /// Whether a receiver shows an error against all others where they are.
     fn shows_error(&self, receiver: usize, may_have_moved: bool) -> Result<bool, CalibrateError<D>> {
         let local = Local::new(self.observations, self.base, receiver, self.deviation);
-        let without = local.cost();
-        let shows = |located: LocatedFault<D>| {
-            let tests = tests(located.fault.kind, self.observations.receivers, self.observations.len());
-            without - located.cost >= SHOWN * (least_gain(tests) - doubt())
-        };
-        if local.all().into_iter().flatten().any(shows) {
+        if local.all().iter().flatten().any(|located| self.shows(&local, located)) {
             return Ok(true);
         }
         Ok(may_have_moved && self.shows_move(receiver, self.base, SHOWN)?)
+    }
+
+    /// Whether a receiver shows this error against the others.
+    fn shows(&self, local: &Local<D>, located: &LocatedFault<D>) -> bool {
+        let tests = tests(located.fault.kind, self.observations.receivers, self.observations.len());
+        local.cost() - located.cost >= SHOWN * (least_gain(tests) - doubt())
     }
 
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
@@ -173,6 +176,7 @@ impl<const D: usize> Fitting<'_, D> {
             .flatten()
             // The fit of all nodes may halve what locating one has left.
             .filter(|located| self.cost - cost - 0.5 * located.cost > 0.0)
+            .filter(|located| !self.are_many() || self.shows(&local, located))
             .map(|located| {
                 let mut network = alone.clone();
                 network.receivers[receiver] = located.position;
