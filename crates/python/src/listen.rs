@@ -4,11 +4,13 @@ use crate::arrays::elements;
 use crate::errors::{Failure, guarded};
 use crate::json;
 use crate::work::{Done, WorkOptions, run, whole};
+use hc::Stage;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use serde::Serialize;
-use sound::{Heard, ListenOptions, SampleFormat, Signal, listen as hear, write_wav};
+use sound::{Heard, ListenError, ListenMonitor, ListenOptions, SampleFormat, Signal, listen_watched, write_wav};
+use tdoa::Monitor;
 
 /// ListenSettings as Python gives them.
 #[derive(FromPyObject)]
@@ -71,18 +73,34 @@ pub(crate) fn listen<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let options = settings.options()?;
-        let Done { result, stopped, .. } = run(py, &how, move |_| {
-            let heard = hear(&recorders, &options).map_err(Failure::input)?;
-            json::text(&Report {
+        let Done { result, stopped, .. } = run(py, &how, move |monitor| {
+            let heard = match listen_watched(&recorders, &options, &asking(monitor)) {
+                Err(ListenError::Stopped) => return Ok::<_, Failure>(None),
+                heard => heard.map_err(Failure::input)?,
+            };
+            let report = json::text(&Report {
                 names: heard.names(),
                 recorder_names: heard.recorder_names(),
                 warnings: heard.warnings(),
                 counts: heard.counts(),
                 list: heard.list(),
                 heard,
-            })
+            })?;
+            Ok(Some(report))
         })?;
         whole(py, result?.into_bound_py_any(py)?, stopped)
+    })
+}
+
+/// A monitor of listening that tells another one how far it is, and stops with it.
+fn asking(monitor: &Monitor) -> ListenMonitor {
+    let monitor = monitor.clone();
+    ListenMonitor::asking(move |progress| {
+        if monitor.progress().total != progress.total {
+            monitor.enter(Stage::Preparing, progress.total);
+        }
+        monitor.reach(progress.done, 0);
+        monitor.is_cancelled()
     })
 }
 

@@ -51,19 +51,29 @@ pub struct ListenMonitor {
     shared: Arc<Shared>,
 }
 
-#[derive(Debug, Default)]
+/// Whether the work is to stop.
+type Question = Box<dyn Fn(ListenProgress) -> bool + Send + Sync>;
+
+#[derive(Default)]
 struct Shared {
     is_stopped: AtomicBool,
-    /// A flag of somebody else that stops the work too.
-    flag: Option<&'static AtomicBool>,
+    question: Option<Question>,
     done: AtomicU64,
     total: AtomicU64,
 }
 
+impl fmt::Debug for Shared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Shared { is_stopped, done, total, .. } = self;
+        f.debug_struct("Shared").field("is_stopped", is_stopped).field("done", done).field("total", total).finish()
+    }
+}
+
 impl ListenMonitor {
-    /// A handle on work that stops also when this flag is true, for instance because a signal handler sets it.
-    pub fn heeding(flag: &'static AtomicBool) -> ListenMonitor {
-        ListenMonitor { shared: Arc::new(Shared { flag: Some(flag), ..Shared::default() }) }
+    /// A handle on work that stops also once `question` returns true. It is called with the progress for each block that
+    /// is read.
+    pub fn asking(question: impl Fn(ListenProgress) -> bool + Send + Sync + 'static) -> ListenMonitor {
+        ListenMonitor { shared: Arc::new(Shared { question: Some(Box::new(question)), ..Shared::default() }) }
     }
 
     /// Asks the work to stop: soon, and for good. It ends with [`ListenError::Stopped`](crate::ListenError::Stopped).
@@ -73,8 +83,8 @@ impl ListenMonitor {
 
     /// Whether the work has been asked to stop.
     pub fn is_stopped(&self) -> bool {
-        let is_set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
-        is_set(&self.shared.is_stopped) || self.shared.flag.is_some_and(is_set)
+        let asked = || self.shared.question.as_ref().is_some_and(|question| question(self.progress()));
+        self.shared.is_stopped.load(Ordering::Relaxed) || asked()
     }
 
     /// How far the work is. The numbers may belong to slightly different instants.
@@ -109,7 +119,6 @@ impl ListenMonitor {
 #[cfg(test)]
 mod tests {
     use super::{ListenMonitor, ListenProgress};
-    use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
     fn clones_share_what_they_count() {
@@ -131,11 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn a_flag_stops_what_heeds_it() {
-        static FLAG: AtomicBool = AtomicBool::new(false);
-        let monitor = ListenMonitor::heeding(&FLAG);
+    fn a_question_stops_what_asks_it() {
+        let monitor = ListenMonitor::asking(|progress| progress.done >= 500);
+        monitor.begin(1000);
+        monitor.add(499);
         assert!(!monitor.is_stopped());
-        FLAG.store(true, Ordering::Relaxed);
+        monitor.add(1);
         assert!(monitor.is_stopped() && !ListenMonitor::default().is_stopped());
     }
 }

@@ -153,6 +153,14 @@ fn new_sounds_are_located() {
     }
     assert!(moments.is_sorted() && moments[0] > 0.0);
 
+    // A network of ranges: a recording tells none.
+    let (_kept, ranges) = simulated("--receivers 9 --transmitters 16 --ranges --noise 0.01");
+    let of_ranges = folder.join("ranges.json");
+    assert!(run("tdoa", &["calibrate", text(&ranges), "--ranges", "--json", text(&of_ranges)]).status.success());
+    let refused = run("tdoa", &["locate", text(&of_ranges), text(&later)]);
+    let said = String::from_utf8(refused.stderr).expect("text");
+    assert!(refused.status.code() == Some(2) && said.contains("does not tell when"), "{said}");
+
     // Another number of channels, and a table beside a recording.
     let (other, ..) = made("other", "11", "3");
     for files in [vec![text(&other)], vec![text(&later), text(&network)]] {

@@ -1,7 +1,7 @@
 //! The sounds of recordings, located.
 
 use serde::{Deserialize, Serialize};
-use tdoa::{Calibration, LocatedEvent, Locator, Pseudoranges};
+use tdoa::{Calibration, Emissions, LocatedEvent, Locator, Pseudoranges};
 
 use super::arguments::Arguments;
 use crate::{Failure, output};
@@ -19,7 +19,8 @@ pub(super) struct Unit {
 struct Sound<const D: usize> {
     #[serde(flatten)]
     event: LocatedEvent<D>,
-    /// When it was made, seconds from the first sample of the recordings.
+    /// When it was made, seconds from the first sample of the recordings; of recorders that were started apart those of the
+    /// first in the network.
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
 }
@@ -34,6 +35,17 @@ pub(super) fn locate<const D: usize>(
 where
     LocatedEvent<D>: Serialize,
 {
+    let known = match network.emissions {
+        Emissions::Unknown => false,
+        // By a schedule offsets differ, and new transmitters need not follow it.
+        Emissions::Constant => network.offsets.iter().flatten().is_sorted_by(|a, b| a == b),
+        _ => true,
+    };
+    if known {
+        let problem = "the network was calibrated with known send times or one constant for all, and a recording does not tell when \
+                       sounds were made; calibrate with sounds";
+        return Err(Failure::in_file(&arguments.network, problem));
+    }
     // The locator takes metres at the speed that was assumed, and corrects them by what was found.
     let factor = network.speed.map_or(1.0, |speed| speed.factor);
     let of_network = units.filter(|unit| unit.name == "s").map(|unit| unit.metres);

@@ -1,6 +1,7 @@
 //! What was heard in recordings, and its words.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use serde::Serialize;
 use sound::{Heard, ListenError, ListenMonitor, ListenOptions, listen_watched};
@@ -31,7 +32,8 @@ impl Recordings {
         speed: f64,
         threads: Option<usize>,
     ) -> Result<Recordings, Failure> {
-        let monitor = ListenMonitor::heeding(interrupt::watch()?);
+        let interrupted = interrupt::watch()?;
+        let monitor = ListenMonitor::asking(|_| interrupted.load(Ordering::Relaxed));
         let describe = || {
             let progress = monitor.progress();
             (progress.done, progress.total, "samples are read".to_string())
