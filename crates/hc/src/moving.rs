@@ -67,16 +67,8 @@ impl ParameterPath for MovingParts<'_> {
         let t = S::one().scale_by(t);
         for (i, &degree) in degrees.iter().enumerate() {
             let coefficient = |k: usize| S::from_c64(self.coefficients[k * m + i]);
-            // Lengths that are known when this is compiled need no loop.
-            let shifted = match degree {
-                1 => shifted(1, &t, coefficient),
-                2 => shifted(2, &t, coefficient),
-                3 => shifted(3, &t, coefficient),
-                degree => shifted(degree as usize, &t, coefficient),
-            };
-            for (k, shifted) in shifted.into_iter().enumerate() {
-                q[k * m + i] = shifted;
-            }
+            let [b0, b1, b2, b3] = shifted(degree as usize, &t, coefficient);
+            (q[i], q[m + i], q[2 * m + i], q[3 * m + i]) = (b0, b1, b2, b3);
         }
     }
 
@@ -92,18 +84,28 @@ impl ParameterPath for MovingParts<'_> {
 }
 
 /// The Taylor coefficients of orders 0 to 3 at the real `t` of a polynomial of this degree: Horner's scheme, again and
-/// again.
+/// again. Written out for the first steps, so that low degrees need no loop over places in memory.
 #[inline(always)]
 fn shifted<S: Lane>(degree: usize, t: &S, coefficient: impl Fn(usize) -> S) -> [S; 4] {
-    let mut b = [S::zero(); 4];
-    for step in 0..=degree {
-        for j in (1..4).rev().filter(|&j| j <= step) {
-            b[j] = if j == step { b[j - 1] } else { S::mul_real_add(&b[j], t, &b[j - 1]) };
-        }
-        let next = coefficient(degree - step);
-        b[0] = if step == 0 { next } else { S::mul_real_add(&b[0], t, &next) };
+    let zero = S::zero();
+    let on = |b: &S, a: &S| S::mul_real_add(b, t, a);
+    let b0 = coefficient(degree);
+    if degree == 0 {
+        return [b0, zero, zero, zero];
     }
-    b
+    let [b0, b1] = [on(&b0, &coefficient(degree - 1)), b0];
+    if degree == 1 {
+        return [b0, b1, zero, zero];
+    }
+    let [b0, b1, b2] = [on(&b0, &coefficient(degree - 2)), on(&b1, &b0), b1];
+    if degree == 2 {
+        return [b0, b1, b2, zero];
+    }
+    let [mut b0, mut b1, mut b2, mut b3] = [on(&b0, &coefficient(degree - 3)), on(&b1, &b0), on(&b2, &b1), b2];
+    for k in (0..degree - 3).rev() {
+        [b0, b1, b2, b3] = [on(&b0, &coefficient(k)), on(&b1, &b0), on(&b2, &b1), on(&b3, &b2)];
+    }
+    [b0, b1, b2, b3]
 }
 
 #[cfg(test)]

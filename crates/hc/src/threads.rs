@@ -6,13 +6,12 @@
 #[cfg(feature = "threads")]
 pub(crate) use rayon::{
     Scope, current_num_threads,
-    prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator},
+    prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator},
     scope,
 };
 #[cfg(not(feature = "threads"))]
 pub(crate) use serial::{
-    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator, Scope,
-    current_num_threads, scope,
+    IntoParallelIterator, IntoParallelRefIterator, ParallelIterator, Scope, current_num_threads, scope,
 };
 
 #[cfg(any(test, not(feature = "threads")))]
@@ -61,16 +60,6 @@ mod serial {
 
     impl<I: Iterator> ParallelIterator for I {}
 
-    /// What parallel iterators of known length have and others have not.
-    pub(crate) trait IndexedParallelIterator: Iterator + Sized {
-        /// The iterator: there is but one part, of all items.
-        fn with_min_len(self, _: usize) -> Self {
-            self
-        }
-    }
-
-    impl<I: Iterator> IndexedParallelIterator for I {}
-
     /// A task that may leave others behind.
     type Spawned<'s> = Box<dyn FnOnce(&Scope<'s>) + 's>;
 
@@ -102,10 +91,7 @@ mod serial {
 
 #[cfg(test)]
 mod tests {
-    use super::serial::{
-        IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator, current_num_threads,
-        scope,
-    };
+    use super::serial::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator, current_num_threads, scope};
     use std::cell::RefCell;
 
     #[test]
@@ -121,7 +107,7 @@ mod tests {
             )
             .collect();
         assert_eq!(sums, [1, 3, 6, 10]);
-        assert_eq!(sums.par_iter().with_min_len(2).count(), 4 * current_num_threads());
+        assert_eq!(sums.par_iter().count(), 4 * current_num_threads());
         let done = RefCell::new(Vec::new());
         scope(|all| {
             done.borrow_mut().push(0);

@@ -32,6 +32,24 @@ pub trait Evaluate: Send + Sync {
     /// Every entry is written, structural zeros too.
     fn jacobian<S: Scalar>(&self, memory: &mut Self::Memory<S>, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]);
 
+    /// [`values`](Evaluate::values) with the parameters of the last call of `values` or [`jacobian`](Evaluate::jacobian) with
+    /// this memory, which `p` holds still. Systems that keep parameters in their memory need not take them again.
+    fn values_again<S: Scalar>(&self, memory: &mut Self::Memory<S>, x: &[S], p: &[S], values: &mut [S]) {
+        self.values(memory, x, p, values);
+    }
+
+    /// [`jacobian`](Evaluate::jacobian) with the parameters of the last call, as [`values_again`](Evaluate::values_again).
+    fn jacobian_again<S: Scalar>(
+        &self,
+        memory: &mut Self::Memory<S>,
+        x: &[S],
+        p: &[S],
+        values: &mut [S],
+        jacobian: &mut [S],
+    ) {
+        self.jacobian(memory, x, p, values, jacobian);
+    }
+
     /// Whether `dF_row/dx_column` is zero whatever the input, as far as the system knows. By default nothing
     /// is known.
     fn vanishes(&self, _row: usize, _column: usize) -> bool {

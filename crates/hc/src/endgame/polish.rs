@@ -3,7 +3,7 @@
 use super::legs::{Leg, Legs};
 use super::walker::Sample;
 use crate::linalg::Lu;
-use crate::refine::{Refiner, size_sqr, weight_sqr};
+use crate::refine::{Refiner, measure, size_sqr, weight_sqr};
 use crate::tolerances::refinement;
 use crate::tracker::Precise;
 use num_complex::Complex64;
@@ -135,18 +135,6 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
             }
         }
         largest
-    }
-}
-
-/// Squares of sizes, coordinate by coordinate, from their own squares and that of the largest.
-fn measure(x: &[Lanes8], squares: &mut [<Lanes8 as Lane>::Real], size_sqr: impl Fn(f64, f64) -> f64) {
-    let mut largest = Lanes8::real(0.0);
-    for (x, square) in x.iter().zip(&mut *squares) {
-        *square = x.norm_sqr();
-        largest = Lanes8::real_max(square, &largest);
-    }
-    for (square, largest) in squares.iter_mut().flat_map(|square| square.as_mut().iter_mut().zip(largest.as_ref())) {
-        *square = size_sqr(*square, *largest);
     }
 }
 

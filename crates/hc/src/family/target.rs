@@ -14,6 +14,7 @@ use crate::distinct::{coincidences, is_real};
 use crate::monitor::Monitor;
 use crate::moving::MovingTrackers;
 use crate::random::{Random, Stream};
+use crate::refine::LaneRefiners;
 use crate::solve::{Solution, Solutions, SolveOptions, Stray, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
@@ -39,9 +40,11 @@ pub(super) struct TargetTracking<'a> {
     pub(super) monitor: Monitor,
 }
 
-/// Trackers of the equations as they are given, and of those that are split, if that saves operations.
+/// Trackers of the equations as they are given, what refines their ends, and trackers of those that are split, if that saves
+/// operations.
 pub(super) struct FamilyTrackers<'a> {
     given: Trackers<'a, Interpreter>,
+    refiners: LaneRefiners<'a, Interpreter>,
     moving: Option<MovingTrackers<'a>>,
 }
 
@@ -51,6 +54,7 @@ impl<'a> TargetTracking<'a> {
         let (p, solutions) = (&self.fibre.parameters, &self.fibre.solutions);
         FamilyTrackers {
             given: Trackers::from_solutions(&self.family.program, p, solutions),
+            refiners: LaneRefiners::new(&self.family.program),
             moving: self.family.split().map(|split| MovingTrackers::new(split, p, solutions)),
         }
     }
@@ -65,8 +69,9 @@ impl<'a> TargetTracking<'a> {
             let systems = [self.family.system(), self.family.square()];
             let misses = |x: &[Complex64]| matches!(self.family.verdict(target, x), Verdict::Misses(_));
             let stray = self.family.overdetermined.as_ref().map(|_| &misses as &Stray<'_>);
-            let FamilyTrackers { given, moving } = trackers;
-            let mut found = solve_member(systems, (given, moving.as_ref()), from, target, stray, &options, monitor);
+            let FamilyTrackers { given, refiners, moving } = trackers;
+            let with = (given, refiners, moving.as_ref());
+            let mut found = solve_member(systems, with, from, target, stray, &options, monitor);
             self.family.keep_own(target, &mut found);
             self.family.keep_solving(target, &mut found);
             found

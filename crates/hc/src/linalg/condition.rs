@@ -2,6 +2,7 @@
 
 use super::lu::Lu;
 use num_complex::Complex64;
+use poly::Lane;
 
 /// Scratch space of estimates of the condition.
 #[derive(Debug)]
@@ -18,6 +19,16 @@ impl Estimate {
 }
 
 impl Lu<Complex64> {
+    /// Takes over a matrix of the same order with its factors: that of lane `l`, whose rows were exchanged in that lane.
+    pub(crate) fn take_lane<S: Lane>(&mut self, lanes: &Lu<S>, l: usize) {
+        self.factors.iter_mut().zip(&lanes.factors).for_each(|(to, from)| *to = from.get(l));
+        for k in 0..self.n {
+            self.pivots[k] = lanes.pivots[k * S::LANES + l];
+            self.moved[k] = lanes.moved[k] && self.pivots[k] as usize != k;
+        }
+        self.exchanged = false;
+    }
+
     /// Replaces `b` by the solution of the system with the conjugate transpose of the factored
     /// matrix.
     pub(crate) fn solve_adjoint(&self, b: &mut [Complex64]) {

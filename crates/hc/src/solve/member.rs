@@ -11,6 +11,7 @@ use super::solutions::{Member, Solutions};
 use crate::family::{Fibre, Limit};
 use crate::monitor::Monitor;
 use crate::moving::MovingTrackers;
+use crate::refine::LaneRefiners;
 use crate::singular::ExactEquations;
 use crate::start::PathSystem;
 use crate::tracker::Trackers;
@@ -26,7 +27,7 @@ use std::borrow::Cow;
 /// endgame begins. The result does not know its member yet ([`Solutions::of_member`]).
 pub(crate) fn solve_member<'e, E: Evaluate>(
     systems: [&System; 2],
-    (trackers, moving): (&Trackers<'e, E>, Option<&MovingTrackers<'e>>),
+    (trackers, refiners, moving): (&Trackers<'e, E>, &LaneRefiners<'e, E>, Option<&MovingTrackers<'e>>),
     fibre: &Fibre,
     target: &[Complex64],
     stray: Option<&Stray<'_>>,
@@ -34,7 +35,7 @@ pub(crate) fn solve_member<'e, E: Evaluate>(
     monitor: &Monitor,
 ) -> Solutions {
     let excess = &Excess::with_stray(stray);
-    let ends = followed(trackers, moving, fibre, target, excess, options, monitor);
+    let ends = followed((trackers, refiners, moving), fibre, target, excess, options, monitor);
     let expanded = if !ends.singular.is_empty() { expanded(systems, target, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
@@ -71,15 +72,15 @@ pub(crate) fn ends<E: Evaluate>(
     monitor: &Monitor,
 ) -> impl Iterator<Item = Vec<Complex64>> {
     let trackers = Trackers::from_solutions(family, &fibre.parameters, &fibre.solutions);
-    let ends = followed(&trackers, None, fibre, target, &Excess::none(), options, monitor);
+    let with = (&trackers, &LaneRefiners::new(family), None);
+    let ends = followed(with, fibre, target, &Excess::none(), options, monitor);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }
 
 /// Where the paths from all solutions of a fibre end.
 fn followed<'e, E: Evaluate>(
-    trackers: &Trackers<'e, E>,
-    moving: Option<&MovingTrackers<'e>>,
+    (trackers, refiners, moving): (&Trackers<'e, E>, &LaneRefiners<'e, E>, Option<&MovingTrackers<'e>>),
     fibre: &Fibre,
     target: &[Complex64],
     excess: &Excess<'_>,
@@ -90,6 +91,7 @@ fn followed<'e, E: Evaluate>(
     follow(
         Route {
             trackers,
+            refiners,
             moving,
             start: fibre,
             count,

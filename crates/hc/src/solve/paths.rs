@@ -13,7 +13,7 @@ use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::moving::{MovingParts, MovingTrackers};
 use crate::ranks::{DividedWork, Lead};
-use crate::refine::Refined;
+use crate::refine::{LaneRefiners, Refined};
 use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
 use crate::start::Source;
 use crate::tolerances::{ends, same};
@@ -45,6 +45,8 @@ const IRREGULAR: usize = 8;
 /// What the paths follow, and how.
 pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) trackers: &'a Trackers<'e, E>,
+    /// What refines regular ends.
+    pub(super) refiners: &'a LaneRefiners<'e, E>,
     /// How paths are tracked up to the endgame with fewer operations, if there is a way.
     pub(super) moving: Option<&'a MovingTrackers<'e>>,
     pub(super) start: &'a S,

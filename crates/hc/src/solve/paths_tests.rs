@@ -4,6 +4,7 @@ use super::{CHUNK, CoefficientStage, End, Route};
 use crate::endgame::Ending;
 use crate::family::Fibre;
 use crate::monitor::Monitor;
+use crate::refine::LaneRefiners;
 use crate::runner::{Round, Work};
 use crate::solve::excess::Excess;
 use crate::solve::record::Record;
@@ -36,7 +37,7 @@ impl Surroundings {
     /// From all points of a fibre.
     fn route<'a, 'e, E: Evaluate>(
         &'a self,
-        trackers: &'a Trackers<'e, E>,
+        (trackers, refiners): &'a (Trackers<'e, E>, LaneRefiners<'e, E>),
         start: &'a Fibre,
         target: &'a [Complex64],
     ) -> Route<'a, 'e, E, Fibre> {
@@ -44,6 +45,7 @@ impl Surroundings {
         let count = start.len();
         Route {
             trackers,
+            refiners,
             start,
             count,
             target,
@@ -74,7 +76,7 @@ fn batches_are_absorbed_in_any_order() {
     let fibre = Fibre::new(coefficients, 1, roots.to_vec());
     let target = TARGET.map(Complex64::from);
     let surroundings = Surroundings::default();
-    let trackers = Trackers::new(family.program());
+    let trackers = (Trackers::new(family.program()), LaneRefiners::new(family.program()));
     let route = || surroundings.route(&trackers, &fibre, &target);
 
     // Records of batches of some paths, through the text that another machine would send.
@@ -135,7 +137,7 @@ fn small_coordinates_tell_the_winding_number() {
     let fibre = Fibre::new(vec![p], 2, vec![one / p, y, one / p, -y]);
     let target = [Complex64::from(0.0)];
     let surroundings = Surroundings::default();
-    let trackers = Trackers::new(family.program());
+    let trackers = (Trackers::new(family.program()), LaneRefiners::new(family.program()));
     let route = surroundings.route(&trackers, &fibre, &target);
     let mut ends = super::follow(route, false);
     assert_eq!(ends.lost(), 0);

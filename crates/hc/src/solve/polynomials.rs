@@ -21,6 +21,7 @@ use crate::distinct::Known;
 use crate::exact::number_of_roots;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
+use crate::refine::LaneRefiners;
 use crate::singular::ExactEquations;
 use crate::start::MixedError;
 use crate::tolerances::same;
@@ -174,9 +175,10 @@ fn serve_all(
         let system = from.system(task.content.attempt, options, monitor);
         let Some(start) = unless_cancelled(system)? else { continue };
         let (count, target) = (from.paths, &from.target[..]);
-        let (trackers, start) = (&Trackers::new(&from.system), &start);
+        let (trackers, refiners, start) = (&Trackers::new(&from.system), &LaneRefiners::new(&from.system), &start);
         let route = Route {
             trackers,
+            refiners,
             start,
             count,
             target,
@@ -225,12 +227,14 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
                 true => Cow::Owned(slack::of_attempt(options, attempt)),
                 false => Cow::Borrowed(options),
             };
-            let (trackers, start, lead) = (&Trackers::new(&from.system), &start, context.lead);
+            let (trackers, refiners) = (&Trackers::new(&from.system), &LaneRefiners::new(&from.system));
+            let (start, lead) = (&start, context.lead);
             let record = context.checkpoint.map(|checkpoint| Part { checkpoint, number });
             let (count, target, options) = (from.paths, &from.target[..], &*options);
             follow(
                 Route {
                     trackers,
+                    refiners,
                     moving: None,
                     start,
                     count,

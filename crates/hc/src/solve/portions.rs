@@ -9,18 +9,18 @@ use crate::endgame::{EndgameOptions, Ending, SingularEnd, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
 use crate::ranks::{RanksError, Shareable, Task, Worker};
-use crate::refine::Refiner;
+use crate::refine::{Refined, Refiner};
 use crate::runner::Round;
-use crate::start::Source;
-use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use crate::start::{Source, StartSolutions};
+use crate::threads::{IntoParallelIterator, ParallelIterator};
 use crate::tolerances::{ends, same};
-use crate::tracker::{PathEnd, TrackerOptions};
+use crate::tracker::{PathEnd, PathSet, TrackerOptions};
 use num_complex::Complex64;
 use poly::Evaluate;
 use serde::{Deserialize, Serialize};
 
-/// Least number of ends that one thread refines at a time.
-const LEAST: usize = 8;
+/// Number of ends that one thread refines at a time.
+const PART: usize = 64;
 
 impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn settings(&self, round: Round) -> TrackerOptions {
@@ -40,7 +40,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     /// Tracks paths to regular ends, or to the point where the endgame begins. Returns one record
     /// per path, in order; none once the work is cancelled.
     pub(super) fn tracked(&self, numbers: &[usize], round: Round, monitor: &Monitor) -> Vec<Record> {
-        let Route { trackers, start, target, .. } = self.route;
+        let Route { trackers, start, .. } = self.route;
         if monitor.is_cancelled() {
             // Not even start solutions are made any more; there may be millions of paths to come.
             return Vec::new();
@@ -59,30 +59,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
             Some((trackers, path)) => trackers.track(path, points, &all, &tracker, monitor),
             None => trackers.track(&self.segment, points, &all, &tracker, monitor),
         };
-        let ends: Vec<Ending> = (0..paths.len())
-            .into_par_iter()
-            .with_min_len(LEAST)
-            .map_init(
-                || Refiner::new(trackers.system()),
-                |refiner, k| {
-                    let (result, point) = (&paths.results()[k], paths.point(k));
-                    match result.end {
-                        PathEnd::Success => {
-                            let refined = refiner.refine(target, point);
-                            let near = relative_distance(&refined.point, point) < ends::ARRIVED;
-                            if near && refiner.is_regular(target, &refined) {
-                                Ending::Regular(refined)
-                            } else {
-                                // Once more up to where the endgame begins.
-                                Ending::Undecided { start: reached.point(result.path).to_vec() }
-                            }
-                        }
-                        PathEnd::Singular => Ending::Open { t: result.t, point: point.to_vec() },
-                        _ => Ending::Lost,
-                    }
-                },
-            )
-            .collect();
+        let ends = self.ends_of(&paths, &reached);
         let mut records: Vec<Record> = numbers.iter().map(|&path| Record::lost(path)).collect();
         for (result, end) in paths.results().iter().zip(ends) {
             let path = reached.numbers[result.path];
@@ -92,6 +69,37 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
             }
         }
         records
+    }
+
+    /// How tracked paths end: regularly, where refinement says so, or not yet.
+    fn ends_of(&self, paths: &PathSet, reached: &StartSolutions) -> Vec<Ending> {
+        let Route { refiners, target, .. } = self.route;
+        let arrived: Vec<usize> = (0..paths.len()).filter(|&k| paths.results()[k].end == PathEnd::Success).collect();
+        let refined = |part: usize| {
+            let end = arrived.len().min((part + 1) * PART);
+            let points: Vec<&[Complex64]> = arrived[part * PART..end].iter().map(|&k| paths.point(k)).collect();
+            refiners.with(target, |refiner| {
+                let refined = refiner.refine(&points).into_iter().zip(points);
+                let is_regular = |(refined, point): (Refined, &[Complex64])| {
+                    let near = relative_distance(&refined.point, point) < ends::ARRIVED;
+                    (near && refiner.single().is_regular(target, &refined)).then_some(refined)
+                };
+                refined.map(is_regular).collect()
+            })
+        };
+        let regular: Vec<Vec<Option<Refined>>> =
+            (0..arrived.len().div_ceil(PART)).into_par_iter().map(refined).collect();
+        let mut regular = regular.into_iter().flatten();
+        let ends = paths.iter().map(|(result, point)| match result.end {
+            // Once more up to where the endgame begins, if not regular.
+            PathEnd::Success => regular
+                .next()
+                .flatten()
+                .map_or_else(|| Ending::Undecided { start: reached.point(result.path).to_vec() }, Ending::Regular),
+            PathEnd::Singular => Ending::Open { t: result.t, point: point.to_vec() },
+            _ => Ending::Lost,
+        });
+        ends.collect()
     }
 
     /// Takes open paths through the endgame. Returns one record per path, in order.

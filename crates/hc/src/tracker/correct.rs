@@ -66,7 +66,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
             return;
         }
         let p = &self.work.parameters[..self.work.system.parameters()];
-        self.work.system.values(&mut self.work.memory, &self.work.corrected, p, &mut self.work.values);
+        self.work.system.values_again(&mut self.work.memory, &self.work.corrected, p, &mut self.work.values);
         let extended = wanted(&self.lanes, StepState::Converged);
         let mut rough = S::real(0.0);
         if extended[0] != 0 {

@@ -48,7 +48,8 @@ impl<S: Scalar> Memory<S> {
     /// # Panics
     /// If [`is_straight`](Memory::is_straight) holds, or a slice is too short.
     pub fn interpret(&mut self, tape: &RegisterTape, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]) {
-        tape.run(self.isa, &mut self.array, x, p, values, jacobian);
+        tape.set_parameters(&mut self.array, p);
+        tape.run(self.isa, &mut self.array, x, values, jacobian);
     }
 
     /// Taylor coefficients, as specified by [`Evaluate::taylor`](crate::Evaluate::taylor).

@@ -23,8 +23,8 @@ struct Compiled {
 #[derive(Clone, Debug)]
 pub struct InterpreterMemory<S> {
     isa: Isa,
-    values: Vec<S>,
-    jacobian: Vec<S>,
+    /// Constants, parameters, unknowns and registers, of whichever tape ran last.
+    array: Vec<S>,
     /// Taylor coefficients of every operand and every result.
     taylor: TaylorMemory<S>,
 }
@@ -65,23 +65,15 @@ impl Evaluate for Interpreter {
     fn memory<S: Scalar>(&self, isa: Isa) -> InterpreterMemory<S> {
         let compiled = &*self.compiled;
         let constants: Vec<S> = compiled.program.constants.iter().map(S::from_exact).collect();
-        let array = |size: usize| {
-            let mut array = constants.clone();
-            array.resize(size, S::zero());
-            array
-        };
-        InterpreterMemory {
-            isa,
-            values: array(compiled.tables.values.size),
-            jacobian: array(compiled.tables.jacobian.size),
-            taylor: compiled.tables.taylor.memory(isa, &constants),
-        }
+        let taylor = compiled.tables.taylor.memory(isa, &constants);
+        let mut array = constants;
+        array.resize(compiled.tables.values.size.max(compiled.tables.jacobian.size), S::zero());
+        InterpreterMemory { isa, array, taylor }
     }
 
     fn values<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
-        let compiled = &*self.compiled;
-        let values = &mut values[..compiled.program.equations];
-        compiled.tables.values.run(memory.isa, &mut memory.values, x, p, values, &mut []);
+        self.compiled.tables.values.set_parameters(&mut memory.array, p);
+        self.values_again(memory, x, p, values);
     }
 
     fn jacobian<S: Scalar>(
@@ -92,10 +84,28 @@ impl Evaluate for Interpreter {
         values: &mut [S],
         jacobian: &mut [S],
     ) {
+        self.compiled.tables.jacobian.set_parameters(&mut memory.array, p);
+        self.jacobian_again(memory, x, p, values, jacobian);
+    }
+
+    fn values_again<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, x: &[S], _: &[S], values: &mut [S]) {
+        let compiled = &*self.compiled;
+        let values = &mut values[..compiled.program.equations];
+        compiled.tables.values.run(memory.isa, &mut memory.array, x, values, &mut []);
+    }
+
+    fn jacobian_again<S: Scalar>(
+        &self,
+        memory: &mut InterpreterMemory<S>,
+        x: &[S],
+        _: &[S],
+        values: &mut [S],
+        jacobian: &mut [S],
+    ) {
         let compiled = &*self.compiled;
         let rows = compiled.program.equations;
         let (values, jacobian) = (&mut values[..rows], &mut jacobian[..rows * compiled.program.variables]);
-        compiled.tables.jacobian.run(memory.isa, &mut memory.jacobian, x, p, values, jacobian);
+        compiled.tables.jacobian.run(memory.isa, &mut memory.array, x, values, jacobian);
     }
 
     fn vanishes(&self, row: usize, column: usize) -> bool {

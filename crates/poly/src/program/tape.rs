@@ -33,18 +33,15 @@ pub struct RegisterTape {
 }
 
 impl RegisterTape {
-    /// Runs the tape in an array that has at least its size and holds the constants.
-    pub(super) fn run<S: Scalar>(
-        &self,
-        isa: Isa,
-        array: &mut [S],
-        x: &[S],
-        p: &[S],
-        values: &mut [S],
-        jacobian: &mut [S],
-    ) {
-        let [constants, parameters, variables] = self.inputs;
+    /// Sets the parameters in an array for later runs.
+    pub(super) fn set_parameters<S: Scalar>(&self, array: &mut [S], p: &[S]) {
+        let [constants, parameters, _] = self.inputs;
         array[constants..][..parameters].clone_from_slice(&p[..parameters]);
+    }
+
+    /// Runs the tape in an array that has at least its size and holds the constants and the parameters.
+    pub(super) fn run<S: Scalar>(&self, isa: Isa, array: &mut [S], x: &[S], values: &mut [S], jacobian: &mut [S]) {
+        let [constants, parameters, variables] = self.inputs;
         array[constants + parameters..][..variables].clone_from_slice(&x[..variables]);
         isa.run(Instructions { code: &self.code, array });
         let rows = values.len();

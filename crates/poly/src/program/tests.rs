@@ -249,6 +249,34 @@ proptest! {
     }
 }
 
+/// Values and Jacobians share the place where a memory keeps its parameters.
+#[test]
+fn parameters_are_kept() {
+    for system in families() {
+        let program = system.compile().unwrap();
+        let (n, m, rows) = (program.variables(), program.parameters(), program.equations());
+        let number = |k: usize| C::new((k * k % 7) as f64 - 2.5, (k * 5 % 11) as f64 - 4.25);
+        let mut memory = program.memory(Isa::Portable);
+        for round in 0..2 {
+            let p: Vec<C> = (0..m).map(|k| number(k + 3 + round)).collect();
+            let (mut found, mut derivatives) = (vec![C::ZERO; rows], vec![C::ZERO; rows * n]);
+            for again in 0..4 {
+                let x: Vec<C> = (0..n).map(|k| number(k + 20 + 7 * again)).collect();
+                let mut expected = vec![C::ZERO; rows * n];
+                program.jacobian(&mut program.memory(Isa::Portable), &x, &p, &mut found, &mut expected);
+                match (again, round) {
+                    (0, 0) => program.jacobian(&mut memory, &x, &p, &mut found, &mut derivatives),
+                    (0, _) => program.values(&mut memory, &x, &p, &mut found),
+                    (2, _) => program.jacobian_again(&mut memory, &x, &p, &mut found, &mut derivatives),
+                    _ => program.values_again(&mut memory, &x, &p, &mut found),
+                }
+                assert_eq!(found, values(&program, &x, &p), "{round} {again}");
+                assert!(again != 2 || derivatives == expected, "{round}");
+            }
+        }
+    }
+}
+
 #[test]
 fn subexpressions_are_shared() {
     // (x+y)^8 needs one sum and three squarings; the second equation one product more.

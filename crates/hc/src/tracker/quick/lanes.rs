@@ -119,10 +119,12 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             weights_sqr: &mut work.weights_sqr,
             inverse: &mut work.inverse_weights_sqr,
         });
-        factor_in_order(work);
+        let p = &work.parameters[..m];
+        work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, work.lu.matrix());
+        work.lu.factor_in_order();
         let sizes = [0, 1, 2].map(|k| {
             if k > 0 {
-                work.system.values(&mut work.memory, &work.point, &work.parameters[..m], &mut work.values);
+                work.system.values_again(&mut work.memory, &work.point, &work.parameters[..m], &mut work.values);
             }
             work.lu.solve(&mut work.values);
             let size = work.isa.run(Correct {
@@ -182,7 +184,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
         let (n, m) = (work.n, work.system.parameters());
         // As it was before it was factored, for the smallest pivot.
         let p = &work.parameters[..m];
-        work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, &mut work.jacobian);
+        work.system.jacobian_again(&mut work.memory, &work.point, p, &mut work.values, &mut work.jacobian);
         work.lu.solve(&mut work.values);
         work.isa.run(Correct {
             x: &work.point,
@@ -192,7 +194,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             out: &mut work.corrected,
         });
         // What another correction finds is rounding error.
-        work.system.values(&mut work.memory, &work.corrected, &work.parameters[..m], &mut work.values);
+        work.system.values_again(&mut work.memory, &work.corrected, &work.parameters[..m], &mut work.values);
         work.lu.solve(&mut work.values);
         let size = work.isa.run(Correct {
             x: &work.corrected,
@@ -210,8 +212,9 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// Derivatives at the accepted points, and with them the next steps.
     fn go_on(&mut self, accepted: u16, straight: bool) {
         let work = &mut *self.work;
-        let n = work.n;
-        factor_in_order(work);
+        let (n, p) = (work.n, &work.parameters[..work.system.parameters()]);
+        work.system.jacobian_again(&mut work.memory, &work.point, p, &mut work.values, work.lu.matrix());
+        work.lu.factor_in_order();
         work.taylor_next[..n].copy_from_slice(&work.point);
         work.differentiate(straight, accepted);
         self.arrive(accepted);
@@ -226,11 +229,4 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             lane.advance(radius.as_ref()[l].sqrt(), self.options, self.tolerances);
         }
     }
-}
-
-/// Values and the factored Jacobian at `point`.
-fn factor_in_order<E: Evaluate, S: Lane>(work: &mut Workspace<'_, E, S>) {
-    let p = &work.parameters[..work.system.parameters()];
-    work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, work.lu.matrix());
-    work.lu.factor_in_order();
 }

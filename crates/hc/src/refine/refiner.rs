@@ -1,5 +1,8 @@
-//! Newton's method with residuals in double-double: a solution to the last bit of double precision.
+//! Newton's method for one point after the other.
 
+use super::polished::Polished;
+use super::refined::Refined;
+use super::sizes::{sizes, weights};
 use crate::inverse;
 use crate::linalg::{Estimate, Lu};
 use crate::random::{Random, Stream};
@@ -7,27 +10,6 @@ use crate::tolerances::refinement;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
-use serde::{Deserialize, Serialize};
-
-/// What refinement tells about a solution.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Refined {
-    /// The refined point.
-    pub point: Vec<Complex64>,
-    /// Relative size of the last correction, about the relative error of the point.
-    pub accuracy: f64,
-    /// Whether the point is clearly a regular solution: corrections shrank by a factor of a
-    /// thousand at once or were tiny from the first, the last correction was tiny, the condition is
-    /// good, and no row of the Jacobian is so small that it may be rounding error. A regular
-    /// solution may be less clear than that.
-    pub plain: bool,
-    /// Largest residual, each relative to its row of the Jacobian times the sizes of the
-    /// coordinates.
-    pub residual: f64,
-    /// Condition number of the Jacobian, with rows scaled to equal size and unknowns measured by
-    /// their own size; infinite if the Jacobian is singular.
-    pub condition: f64,
-}
 
 /// Refines solutions of `F(x; p) = 0`. It keeps its memory from call to call.
 pub struct Refiner<'a, E: Evaluate> {
@@ -37,32 +19,20 @@ pub struct Refiner<'a, E: Evaluate> {
     precise_x: Vec<ComplexDd>,
     rounded_p: Vec<Complex64>,
     precise_values: Vec<ComplexDd>,
-    values: Vec<Complex64>,
-    jacobian: Vec<Complex64>,
-    lu: Lu<Complex64>,
+    pub(super) values: Vec<Complex64>,
+    pub(super) jacobian: Vec<Complex64>,
+    pub(super) lu: Lu<Complex64>,
     /// The parameters in double-double.
     exact_p: Vec<ComplexDd>,
     next: Vec<Complex64>,
     /// Squared sizes of unknowns.
-    squares: Vec<[f64; 1]>,
+    pub(super) squares: Vec<[f64; 1]>,
     scales: Vec<f64>,
     estimate: Estimate,
     /// The random changes of the parameters, one draw after the other.
     changes: Vec<Complex64>,
     /// A result that callers may use for a while.
     pub(crate) spare: Refined,
-}
-
-/// How the corrections of a point went.
-struct Polished {
-    /// The relative size of the last correction.
-    accuracy: f64,
-    /// Whether a correction that was no rounding error led to one a thousand times smaller, or the first
-    /// one was tiny: near a solution of multiplicity `k` at a distance `d` it would be `d / k`, and a row of
-    /// the Jacobian about `d` or less, which is faint.
-    steady: bool,
-    /// The relative distance from where the Jacobian was factored.
-    moved: f64,
 }
 
 impl<'a, E: Evaluate> Refiner<'a, E> {
@@ -103,21 +73,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         refined.point.clear();
         refined.point.extend_from_slice(point);
         let x = &mut refined.point;
-        let Polished { accuracy, steady, moved } = self.polish(&exact, x);
+        let polished = self.polish(&exact, x);
         self.exact_p = exact;
-        let serves = steady && accuracy <= refinement::NEAR;
-        let (mut residual, mut condition, mut smallest_row) = self.judge(p, x, serves);
-        // Near a set of solutions that is no point, the Jacobian becomes singular within a step. Written so
-        // that NaN is far.
-        let unmoved = condition * moved <= refinement::UNMOVED;
-        if serves && !unmoved {
-            (residual, condition, smallest_row) = self.judge(p, x, false);
+        let serves = polished.serves();
+        let mut judged = self.judge(p, x, serves);
+        if serves && !polished.is_unmoved(judged.1) {
+            judged = self.judge(p, x, false);
         }
-        refined.plain = steady
-            && accuracy <= refinement::TINY
-            && condition <= refinement::GOOD_CONDITION
-            && smallest_row > refinement::FAINT;
-        (refined.accuracy, refined.residual, refined.condition) = (accuracy, residual, condition);
+        polished.tell(judged, refined);
     }
 
     /// Parameters in double-double, in memory to be given back.
@@ -133,23 +96,23 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// point. This distance is absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
     pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64], blurs: bool) -> (f64, Vec<f64>) {
-        let Polished { accuracy, steady, .. } = self.polish(p, x);
-        let blur = if blurs { self.blur(p, x, steady && accuracy <= refinement::NEAR) } else { Vec::new() };
-        (accuracy, blur)
+        let polished = self.polish(p, x);
+        let blur = if blurs { self.blur(p, x, polished.serves()) } else { Vec::new() };
+        (polished.accuracy, blur)
     }
 
     /// Corrects a point until corrections no longer shrink. If it is steady, and if the last correction is
     /// at most `refinement::NEAR`, the Jacobian and its factors are
     /// left, at a point as far from the result as it has moved since.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> Polished {
-        let (mut accuracy, mut steady, mut moved) = (f64::INFINITY, false, 0.0);
+        let mut polished = Polished::BEGUN;
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
         for _ in 0..refinement::ITERATIONS {
             if !serves {
                 weights(x, &mut self.squares);
                 self.factor(p, x);
-                moved = 0.0;
+                polished.moved = 0.0;
             }
             self.correction(p, x);
             self.next.clear();
@@ -158,25 +121,20 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             let relative = self.values.iter().zip(&self.squares).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
             // Once NaN, always NaN.
             let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
-            let shrinks = size <= f64::EPSILON || size < if serves { refinement::STEADY * accuracy } else { accuracy };
-            if !shrinks {
+            if !polished.shrinks(size, serves) {
                 if !serves {
                     break;
                 }
                 serves = false;
                 continue;
             }
-            let shrunk = accuracy.is_finite() && accuracy > refinement::TINY && size <= refinement::STEADY * accuracy;
-            steady |= shrunk || (accuracy.is_infinite() && size <= refinement::TINY);
-            accuracy = size;
-            moved += size;
             x.copy_from_slice(&self.next);
-            if accuracy <= f64::EPSILON {
+            if polished.accuracy <= f64::EPSILON {
                 break;
             }
-            serves = accuracy <= refinement::NEAR;
+            serves = polished.accuracy <= refinement::NEAR;
         }
-        Polished { accuracy, steady, moved }
+        polished
     }
 
     /// Whether a refined point is a regular solution: either [clearly](Refined::plain), or by the
@@ -334,7 +292,6 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Residual, condition and smallest row of the Jacobian, relative to the largest or to one, at
     /// `x`; `factored` says that the Jacobian and its factors are those of `x` already.
     fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64, f64) {
-        let n = x.len();
         sizes(x, &mut self.squares);
         if factored {
             self.system.values(&mut self.memory, x, p, &mut self.values);
@@ -342,6 +299,12 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
             self.lu.factor(&self.jacobian, &self.squares);
         }
+        self.judge_values()
+    }
+
+    /// [`judge`](Self::judge) from the values and sizes at a point, and the Jacobian and its factors.
+    pub(super) fn judge_values(&mut self) -> (f64, f64, f64) {
+        let n = self.squares.len();
         // Sizes of the rows.
         let scales = &mut self.scales;
         scales.clear();
@@ -360,41 +323,4 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let (least, largest) = scales.iter().fold((f64::INFINITY, 1.0f64), |(l, g), s| (l.min(*s), g.max(*s)));
         (residual, self.lu.condition(&self.jacobian, &self.squares, &mut self.estimate), least / largest)
     }
-}
-
-/// Squared sizes of the coordinates, none below 1e-4 of the largest.
-fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
-    let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    squares.clear();
-    squares.extend(x.iter().map(|z| [weight_sqr(z.norm_sqr(), largest)]));
-}
-
-/// The square of the size of a coordinate as a weight, from its square and that of the largest.
-pub(crate) fn weight_sqr(square: f64, largest: f64) -> f64 {
-    square.max(if largest > 0.0 { 1e-8 * largest } else { 1.0 })
-}
-
-/// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less,
-/// count as zero, which is measured on the scale of 1e-4 of that.
-fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
-    let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    squares.clear();
-    squares.extend(x.iter().map(|z| [size_sqr(z.norm_sqr(), largest)]));
-}
-
-/// The square of the [size](size) of a coordinate, from its square and that of the largest.
-pub(crate) fn size_sqr(square: f64, largest: f64) -> f64 {
-    measured(square, largest, 1e-24, 1e-8)
-}
-
-/// The size by which refinement measures a coordinate of absolute value `norm`, `largest` that of the
-/// largest coordinate: the root of what [`sizes`] gives.
-pub(crate) fn size(norm: f64, largest: f64) -> f64 {
-    measured(norm, largest, 1e-12, 1e-4)
-}
-
-/// `size`, or `scale` where it is below `zero`, both in units of the largest or of one if that is less.
-fn measured(size: f64, largest: f64, zero: f64, scale: f64) -> f64 {
-    let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
-    if size > zero * unit { size } else { scale * unit }
 }
