@@ -259,9 +259,11 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
             let hopeless = problem.roots.is_some() || are_hopeless(ends.lost(), from.paths);
             attempts.start_systems += 1;
             attempts.retracked += ends.retracked;
-            let found = problem.solutions_at(ends, from, excess);
+            let mut found = problem.solutions_at(ends, from, excess);
+            // Other paths would come to the ends for which no work is left.
+            let needless = found.lost() <= found.unexamined;
             attempts.join(from.kind, found);
-            let last = attempts.start_systems > options.restarts || hopeless;
+            let last = attempts.start_systems > options.restarts || hopeless || needless;
             if attempts.best.lost() == 0 || last || monitor.is_cancelled() {
                 break;
             }

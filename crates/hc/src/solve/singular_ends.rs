@@ -169,6 +169,7 @@ impl Ends {
 
     fn unresolved(&mut self, end: &[Complex64], paths: &[usize], why: UnresolvedReason) {
         self.assign(paths, End::LOST);
+        self.unexamined += if why == UnresolvedReason::TooMuch { paths.len() } else { 0 };
         self.unresolved.push(Unresolved { value: end.to_vec(), paths: paths.len(), reason: why.to_string() });
     }
 
@@ -215,6 +216,8 @@ impl Ends {
 const BATCH: usize = 16;
 /// One of several may take this share of the work that is left.
 const SHARE: usize = 4;
+/// At first each of many may take so many times its even share.
+const EASY: usize = 4;
 /// The least work that a solve may spend on its ends, in products of complex double-doubles: about
 /// a processor second. And the work for each path and factor, about as much as tracking.
 const WORK: u64 = 200_000_000;
@@ -222,6 +225,9 @@ const WORK_OF_FACTORS: u64 = 100;
 
 /// The local structure at all groups of ends, until the work that one solve may take is done, or the solve is
 /// cancelled.
+///
+/// Among many groups, those that take little come first, and the small ones among these: ends on a component may be
+/// thousands, and a few that take all the work there is would leave the others unexamined.
 fn structures_of_ends(
     tracked: &Tracked<'_>,
     ends: &[(usize, SingularEnd)],
@@ -229,29 +235,44 @@ fn structures_of_ends(
     known: &[Solution],
     spare: usize,
 ) -> Vec<(Vec<usize>, LocalStructure)> {
-    let mut found = Vec::new();
-    for batch in groups.chunks(BATCH) {
-        let left = tracked.work.saturating_sub(tracked.expanded.given.spent());
-        let stop = if tracked.monitor.is_cancelled() {
-            Some(UnresolvedReason::Interrupted)
-        } else {
-            (left == 0).then_some(UnresolvedReason::TooMuch)
-        };
-        if let Some(why) = stop {
-            found.extend(batch.iter().map(|group| (group.clone(), LocalStructure::Unresolved(why))));
-            continue;
+    let mut found: Vec<Vec<(Vec<usize>, LocalStructure)>> = vec![Vec::new(); groups.len()];
+    let mut open: Vec<usize> = (0..groups.len()).collect();
+    open.sort_by_key(|&k| groups[k].len());
+    let few = groups.len() <= SHARE;
+    let shares = if few { vec![groups.len().max(1)] } else { vec![SHARE.max(groups.len() / EASY), SHARE] };
+    for (round, &share) in shares.iter().enumerate() {
+        let (mut hard, easily) = (Vec::new(), round + 1 < shares.len());
+        for batch in open.chunks(BATCH) {
+            let left = tracked.work.saturating_sub(tracked.expanded.given.spent());
+            let stop = if tracked.monitor.is_cancelled() {
+                Some(UnresolvedReason::Interrupted)
+            } else {
+                (left == 0).then_some(UnresolvedReason::TooMuch)
+            };
+            if let Some(why) = stop {
+                batch.iter().for_each(|&k| found[k] = vec![(groups[k].clone(), LocalStructure::Unresolved(why))]);
+                continue;
+            }
+            // Each has its own, so that it does not matter which is done first.
+            let of = |&k: &usize| {
+                let given = tracked.expanded.given.limited(left / share as u64);
+                let structures = structures_of_group(tracked, &given, ends, &groups[k], (known, spare), easily);
+                tracked.expanded.given.spend(given.spent());
+                (k, structures)
+            };
+            let structures: Vec<(usize, Vec<_>)> = batch.par_iter().map(of).collect();
+            for (k, structures) in structures {
+                let is_open = |(_, found): &(_, LocalStructure)| matches!(found, LocalStructure::Unresolved(_));
+                if easily && structures.iter().any(is_open) {
+                    hard.push(k);
+                } else {
+                    found[k] = structures;
+                }
+            }
         }
-        // Each has its own, so that it does not matter which is done first.
-        let of = |group: &Vec<usize>| {
-            let given = tracked.expanded.given.limited(left / groups.len().clamp(1, SHARE) as u64);
-            let structures = structures_of_group(tracked, &given, ends, group, known, spare);
-            tracked.expanded.given.spend(given.spent());
-            structures
-        };
-        let structures: Vec<Vec<_>> = batch.par_iter().map(of).collect();
-        found.extend(structures.into_iter().flatten());
+        open = hard;
     }
-    found
+    found.concat()
 }
 
 /// The work that a solve may spend on the ends of this many paths.
@@ -260,14 +281,15 @@ pub(super) fn work(given: &singular::ExactEquations, paths: usize) -> u64 {
 }
 
 /// The local structure at ends that nearly coincide: of all at once, or of each if they are not a
-/// multiple solution. `spare` more paths may end there; other paths end at the `known` solutions.
+/// multiple solution. `spare` more paths may end there; other paths end at the `known` solutions. If they are to be told
+/// `easily`, what exhausts the work is left as it is.
 fn structures_of_group(
     tracked: &Tracked<'_>,
     given: &singular::ExactEquations,
     ends: &[(usize, SingularEnd)],
     group: &[usize],
-    known: &[Solution],
-    spare: usize,
+    (known, spare): (&[Solution], usize),
+    easily: bool,
 ) -> Vec<(Vec<usize>, LocalStructure)> {
     let (paths, most) = (group.len() + spare, ends.len() + spare);
     let structure = |k: usize, effort: Effort| {
@@ -292,6 +314,7 @@ fn structures_of_group(
             return vec![(group.to_vec(), other.unwrap_or(own))];
         }
         LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
+        LocalStructure::Unresolved(_) if easily && given.is_exhausted() => return vec![(group.to_vec(), own)],
         _ => {}
     }
     let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].1.point, &ends[best].1.point) > ends::ONE_POINT;
