@@ -3,6 +3,7 @@
 // The families of systems are those of the tests.
 #[path = "../../hc/tests/all/common/generators.rs"]
 mod generators;
+mod large;
 mod networks;
 mod program;
 mod solving;
@@ -54,6 +55,8 @@ enum Table {
     Networks,
     /// Formulas as written beside the same rewritten by hand.
     Written,
+    /// Large systems, beside published figures.
+    Large,
 }
 
 /// Runs the tables that are asked for and writes the page.
@@ -96,6 +99,7 @@ pub fn run(arguments: &CompareArguments) -> Result<()> {
             Table::Gfan => volumes::beside_gfan(&tools, &plan, &mut text)?,
             Table::Networks => networks::beside_phcpack(&tools, &plan, &mut text)?,
             Table::Written => written::beside_rewritten(&plan, &mut text)?,
+            Table::Large => large::table(&tools, &plan, &mut text)?,
         }
         // The tables so far, for a run that is ended early, and what is then missing.
         if let Some(path) = output {

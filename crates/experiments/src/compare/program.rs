@@ -62,6 +62,18 @@ pub(super) fn is_installed(program: &str) -> bool {
 
 /// Runs a program with the given standard input, for at most `limit` processor seconds.
 pub(super) fn run(program: &Path, arguments: &[&str], files: &[&Path], input: &str, limit: u32) -> Result<Run> {
+    run_to(&[0], program, arguments, files, input, limit)
+}
+
+/// [`run`], where the program may end with one of these exit statuses.
+pub(super) fn run_to(
+    statuses: &[i32],
+    program: &Path,
+    arguments: &[&str],
+    files: &[&Path],
+    input: &str,
+    limit: u32,
+) -> Result<Run> {
     let folder = tempfile::tempdir()?;
     let [output, errors] = ["output", "errors"].map(|name| folder.path().join(name));
     // The system ends a process that has used up its processor time.
@@ -78,7 +90,8 @@ pub(super) fn run(program: &Path, arguments: &[&str], files: &[&Path], input: &s
     let seconds = started.elapsed().as_secs_f64();
     let stopped = was_stopped(status);
     let errors = std::fs::read(&errors)?;
-    ensure!(stopped || status.success(), "{}: {}", program.display(), String::from_utf8_lossy(&errors));
+    let ended = status.code().is_some_and(|code| statuses.contains(&code));
+    ensure!(stopped || ended, "{}: {}", program.display(), String::from_utf8_lossy(&errors));
     let processor = Some((rusage.utime + rusage.stime).as_secs_f64()).filter(|&seconds| seconds > 0.0);
     let megabytes = Some(rusage.maxrss as f64 / (1 << 20) as f64).filter(|&megabytes| megabytes > 0.0);
     let output = String::from_utf8_lossy(&std::fs::read(&output)?).into_owned();
