@@ -37,6 +37,12 @@ pub(crate) fn off<const D: usize>(mut u: [f64; D], basis: &[[f64; D]]) -> ([f64;
     (u.map(|x| x / size), size)
 }
 
+/// The largest distance of two points; `None` of less than two.
+pub(crate) fn extent<const D: usize>(points: &[[f64; D]]) -> Option<f64> {
+    let pairs = points.iter().enumerate().flat_map(|(k, a)| points[..k].iter().map(|b| distance(*a, *b)));
+    pairs.reduce(f64::max)
+}
+
 /// The centroid of some points; the origin if there are none.
 pub(crate) fn centroid<'a, const D: usize>(points: impl Iterator<Item = &'a [f64; D]> + Clone) -> [f64; D] {
     let count = points.clone().count().max(1) as f64;

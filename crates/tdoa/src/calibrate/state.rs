@@ -28,6 +28,8 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) measured: Pseudoranges,
     /// The measurements without the errors that are taken out, with what is known of receivers.
     pub(crate) observations: Observations<D>,
+    /// Whether the networks are good enough that are near the best ones.
+    pub(crate) is_rough: bool,
     /// Networks, best first; at least one once the search has ended.
     pub(crate) ranked: Vec<RefinedNetwork<D>>,
     /// Deviation of the measurements: the given one, or that at the best network.
@@ -89,6 +91,7 @@ impl<'a, const D: usize> State<'a, D> {
             left: Vec::new(),
             echoes: Vec::new(),
             anchors: None,
+            is_rough: false,
             plane_distances: None,
             dimension_test: DimensionTest::default(),
             speed: None,

@@ -42,6 +42,27 @@ impl<'a, const D: usize> Draft<'a, D> {
         sources: &[&dyn Hypotheses<D>],
         monitor: &'a Monitor,
     ) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        Draft::new(measured, options, monitor)?.then(|draft| draft.search(sources))
+    }
+
+    /// Networks from these sources alone, near enough to the best ones to be compared with others.
+    pub(crate) fn roughly(
+        measured: &'a Pseudoranges,
+        options: &'a CalibrateOptions<D>,
+        source: &dyn Hypotheses<D>,
+        monitor: &'a Monitor,
+    ) -> Result<Draft<'a, D>, CalibrateError<D>> {
+        let mut draft = Draft::new(measured, options, monitor)?;
+        draft.state.is_rough = true;
+        draft.then(|draft| draft.search(&[source]))
+    }
+
+    /// Nothing is searched yet.
+    fn new(
+        measured: &'a Pseudoranges,
+        options: &'a CalibrateOptions<D>,
+        monitor: &'a Monitor,
+    ) -> Result<Draft<'a, D>, CalibrateError<D>> {
         options.validate()?;
         anchors::validate(measured, options)?;
         let (table, impossible) = without_impossible(measured);
@@ -61,12 +82,15 @@ impl<'a, const D: usize> Draft<'a, D> {
         if of_clocks > 0 && measurements < unknowns {
             return Err(CalibrateError::Clocks { measurements, unknowns, of_clocks });
         }
-        Draft { state, input }.then(|draft| draft.search(sources))
+        Ok(Draft { state, input })
     }
 
     /// Without the errors that receivers show, and without reflections.
     pub(crate) fn cleared(self) -> Result<Draft<'a, D>, CalibrateError<D>> {
         self.then(|Draft { state, .. }| {
+            if std::mem::take(&mut state.is_rough) {
+                state.finish(state.known.unwrap_or(state.deviation))?;
+            }
             state.clear()?;
             state.leave_out_reflections()
         })
@@ -173,6 +197,7 @@ fn local_layout<const D: usize>(
     let receivers = places.iter().map(|&i| input.usable.receivers[i]).collect();
     let transmitters = columns.iter().map(|&j| input.usable.transmitters[j]).collect();
     *input = Input::new(input.table.clone(), Usable { receivers, transmitters, warnings });
-    *state = State::new(input.centred(), known, options, monitor);
+    let is_rough = state.is_rough;
+    *state = State { is_rough, ..State::new(input.centred(), known, options, monitor) };
     Ok(Some((layout, places)))
 }

@@ -22,6 +22,7 @@ const LEAST_SQUARES: RefineOptions = RefineOptions {
     steps: 2000,
     rounds: 0,
     tolerance: 1e-14,
+    negligible: 0.0,
 };
 
 /// The network to which least squares leads from a known one, judged like those of the solvers: what they

@@ -18,7 +18,7 @@ use super::motion::Motion;
 use super::normal::Normal;
 use super::refiner::NetworkRefiner;
 use super::rigid::rigid_motion;
-use super::way::ways;
+use super::way::{Way, ways};
 use crate::bordered::Bordered;
 use crate::loss::Loss;
 use crate::network::Network;
@@ -69,11 +69,6 @@ impl<const D: usize> Covariance<D> {
                 own.corner = self.constant.map_or(own.corner, |at| self.joint[at * (size + 1)]);
             }
         }
-    }
-
-    /// Largest standard deviation of a receiver's place, metres.
-    pub(crate) fn loosest(&self) -> f64 {
-        if self.loose.is_empty() { self.receivers.iter().map(trace).fold(0.0, f64::max).sqrt() } else { f64::INFINITY }
     }
 }
 
@@ -168,6 +163,37 @@ impl<const D: usize> Reduced<'_, D> {
         self.refiner.normal()
     }
 
+    /// The covariance of a receiver.
+    pub(super) fn block(&self, i: usize) -> [[f64; D]; D] {
+        from_fn(|a| from_fn(|b| self.inverse[(D * i + a, D * i + b)]))
+    }
+
+    /// The covariance of what two measurements have of receivers and clocks.
+    #[inline]
+    pub(super) fn product(&self, a: &Way<'_, D>, b: &Way<'_, D>) -> f64 {
+        let row = |p: usize| (0..D).map(|q| self.inverse[(a.at + p, b.at + q)] * b.ray[q]).sum::<f64>();
+        let rays = (0..D).map(|p| a.ray[p] * row(p)).sum::<f64>();
+        rays + a.of_clocks(b, |x, y| self.inverse[(x, y)])
+    }
+
+    /// Receivers that could move without a change of the measurements (to first order) beyond a rigid motion.
+    fn loose(&self, network: &Network<D>) -> Vec<usize> {
+        let modes = self.modes.as_ref();
+        if self.rigid > 0 {
+            loose(&modes, self.zero, network)
+        } else {
+            loose_beside_held::<D>(&modes, self.zero, &self.free)
+        }
+    }
+
+    /// Largest standard deviation of a receiver's place, metres.
+    pub(super) fn loosest(&self, network: &Network<D>) -> f64 {
+        if !self.loose(network).is_empty() {
+            return f64::INFINITY;
+        }
+        (0..network.receivers.len()).map(|i| trace(&self.block(i))).fold(0.0, f64::max).sqrt()
+    }
+
     /// Adds what it adds that the values of pins are not known well.
     pub(super) fn add_levels(&self, covariance: &mut Covariance<D>, observations: &Observations<D>, sigma: f64) {
         if !observations.levels().is_empty() {
@@ -208,9 +234,7 @@ pub(crate) fn covariance<const D: usize>(
     let m = observations.receivers;
     let Some(reduced) = reduced(observations, network, sigma, monitor)? else { return Ok(None) };
     let (normal, joint) = (reduced.normal(), reduced.joint());
-    let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
-    let zero = *zero;
-    let receivers = (0..m).map(|i| from_fn(|a| from_fn(|b| inverse[(D * i + a, D * i + b)]))).collect();
+    let receivers = (0..m).map(|i| reduced.block(i)).collect();
     let constant = observations.clocks().constant().map(|at| D * m + at);
     let mut transmitters = Vec::with_capacity(observations.transmitters);
     for j in 0..observations.transmitters {
@@ -223,21 +247,15 @@ pub(crate) fn covariance<const D: usize>(
             let mut sum = Bordered::ZERO;
             for (a, of_a) in gains.iter().zip(&ways) {
                 for (b, of_b) in gains.iter().zip(&ways) {
-                    let row = |p: usize| (0..D).map(|q| inverse[(of_a.at + p, of_b.at + q)] * of_b.ray[q]).sum::<f64>();
-                    let rays = (0..D).map(|p| of_a.ray[p] * row(p)).sum::<f64>();
-                    sum.add_product(rays + of_a.of_clocks(of_b, |x, y| inverse[(x, y)]), a, b);
+                    sum.add_product(reduced.product(of_a, of_b), a, b);
                 }
             }
             sum.add(&own_covariance(factor, sigma));
-            sum.corner = constant.map_or_else(|| observations.of_offset(sum.corner), |at| inverse[(at, at)]);
+            sum.corner = constant.map_or_else(|| observations.of_offset(sum.corner), |at| reduced.inverse[(at, at)]);
             sum
         }));
     }
-    let loose = if *rigid > 0 {
-        loose(&modes.as_ref(), zero, network)
-    } else {
-        loose_beside_held::<D>(&modes.as_ref(), zero, free)
-    };
+    let loose = reduced.loose(network);
     let mut found = Covariance { receivers, joint, transmitters, loose, constant };
     reduced.add_levels(&mut found, observations, sigma);
     Ok(Some(found))

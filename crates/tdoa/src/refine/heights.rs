@@ -14,8 +14,8 @@
 //! that they allow: heights below that change nothing that was measured.
 
 use super::cancel::{Cancelled, check};
-use super::covariance::covariance;
 use super::gross_errors::{Good, GrossErrors};
+use super::height_variances::HeightVariances;
 use super::refiner::{NetworkRefiner, RefineOptions, SEARCH};
 use crate::loss::SEARCH_NU;
 use crate::network::Network;
@@ -27,6 +27,15 @@ use std::f64::consts::{LN_2, TAU};
 
 /// Most rounds of fitting network and heights in turn.
 const ROUNDS: usize = 60;
+
+/// Steps of a fit.
+const MOST_STEPS: usize = 30;
+
+/// Measurements of which a step takes long: then rounds have few, and a decrease of the negative log-likelihood that tells
+/// nothing is none.
+const MANY: usize = 5000;
+const STEPS: usize = 5;
+const NEGLIGIBLE: f64 = 0.01;
 
 /// Relative change of the deviations that ends the rounds.
 const STILL: f64 = 5e-3;
@@ -102,17 +111,18 @@ impl<const D: usize> Heights<D> {
         };
         now.centre();
         now.receivers = now.off_levels().sqrt().max(least);
-        let mut before = None;
+        let (mut before, mut steps) = (None, if has_many(observations) { STEPS } else { MOST_STEPS });
         for _ in 0..ROUNDS {
             let pinned = observations.clone().pinned(&now.pins());
-            now.network = fitted(&pinned, now.network, monitor)?;
+            now.network = now.fit(&pinned, now.network.clone(), steps, monitor)?;
             now.centre();
-            let Some(uncertainty) = covariance(&pinned, &now.network, now.deviation, monitor)? else { return Ok(None) };
-            let z = D - 1;
-            let of_receivers: f64 = uncertainty.receivers.iter().map(|c| c[z][z]).sum();
-            now.loosest = uncertainty.loosest();
-            let placed = |j: usize| uncertainty.transmitters[j].map_or(now.transmitters.powi(2), |c| c.rows[z][z]);
-            let of_transmitters: f64 = (0..observations.transmitters).map(placed).sum();
+            let Some(variances) = HeightVariances::of(&pinned, &now.network, now.deviation, monitor)? else {
+                return Ok(None);
+            };
+            now.loosest = variances.loosest;
+            let of_receivers: f64 = variances.receivers.iter().sum();
+            let unplaced = now.transmitters.powi(2);
+            let of_transmitters: f64 = variances.transmitters.iter().map(|own| own.unwrap_or(unplaced)).sum();
             let told = [(m, of_receivers, now.receivers), (n, of_transmitters, now.transmitters)]
                 .map(|(count, variances, tau)| (count - variances / tau.powi(2)).max(0.0));
             let change = |square: f64, variances: f64, count: f64, tau: f64| {
@@ -136,7 +146,11 @@ impl<const D: usize> Heights<D> {
                 now.deviation = (squares / left).sqrt();
             }
             if changes.iter().all(|change| change.abs() < STILL) {
-                break;
+                if steps == MOST_STEPS {
+                    break;
+                }
+                // The network may still be on its way.
+                steps = MOST_STEPS;
             }
         }
         Ok(Some(now))
@@ -151,8 +165,23 @@ impl<const D: usize> Heights<D> {
         monitor: &Monitor,
     ) -> Result<(f64, Network<D>), Cancelled> {
         let pinned = observations.clone().pinned(&self.pins());
-        let network = fitted(&pinned, network, monitor)?;
+        let network = self.fit(&pinned, network, MOST_STEPS, monitor)?;
         Ok((squares(&pinned, &network), network))
+    }
+
+    /// The network of least squares near one, or nearer to it by so many steps.
+    fn fit(
+        &self,
+        pinned: &Observations<D>,
+        network: Network<D>,
+        steps: usize,
+        monitor: &Monitor,
+    ) -> Result<Network<D>, Cancelled> {
+        let negligible = if has_many(pinned) { NEGLIGIBLE * self.deviation.powi(2) } else { 0.0 };
+        let fit = RefineOptions { scale: Some(1.0), steps, rounds: 0, tolerance: 1e-9, negligible, ..SEARCH };
+        let network = NetworkRefiner::new(pinned, f64::INFINITY, monitor).refine(network, &fit).network;
+        check(monitor)?;
+        Ok(network)
     }
 
     /// These with the plane of the transmitters as z = 0, from which receivers are as far on either side.
@@ -200,7 +229,9 @@ impl<const D: usize> Heights<D> {
         let points = flat.network.receivers.iter_mut().chain(&mut flat.network.transmitters);
         points.for_each(|p| p[D - 1] = 0.0);
         let pinned = observations.clone().pinned(&flat.pins());
-        let fit = RefineOptions { scale: Some(deviation), steps: 100, rounds: 0, tolerance: 1e-10, ..SEARCH };
+        let negligible = if has_many(observations) { NEGLIGIBLE } else { 0.0 };
+        let fit =
+            RefineOptions { scale: Some(deviation), steps: 100, rounds: 0, tolerance: 1e-10, negligible, ..SEARCH };
         flat.network = NetworkRefiner::new(&pinned, SEARCH_NU, monitor).refine(flat.network, &fit).network;
         check(monitor)?;
         Ok(flat)
@@ -227,7 +258,7 @@ impl<const D: usize> Heights<D> {
             if left == 0 {
                 return Ok(None);
             }
-            now.network = fitted(&kept, now.network, monitor)?;
+            now.network = now.fit(&kept, now.network.clone(), MOST_STEPS, monitor)?;
             let squares = squares(&kept, &now.network);
             let deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
             errors.count(kept.len());
@@ -359,16 +390,9 @@ fn whole_way(before: f64, change: f64) -> f64 {
     if share > 0.0 { change / (1.0 - share.min(MOST_LEFT)) } else { change }
 }
 
-/// The network of least squares near one.
-fn fitted<const D: usize>(
-    pinned: &Observations<D>,
-    network: Network<D>,
-    monitor: &Monitor,
-) -> Result<Network<D>, Cancelled> {
-    let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
-    let network = NetworkRefiner::new(pinned, f64::INFINITY, monitor).refine(network, &fit).network;
-    check(monitor)?;
-    Ok(network)
+/// Whether these are so many measurements that a part of them tells about how high nodes are, and each step takes long.
+pub(crate) fn has_many<const D: usize>(observations: &Observations<D>) -> bool {
+    observations.len() >= MANY
 }
 
 /// Sum of the squares of the residuals, of pins too.

@@ -23,7 +23,11 @@ pub(crate) const SEARCH: RefineOptions = RefineOptions {
     steps: 15,
     rounds: 6,
     tolerance: 1e-5,
+    negligible: 0.0,
 };
+
+/// Steps that are worth it together, or are the last ones.
+const STRIDE: usize = 5;
 
 /// Steps with residuals of one variance, and the factor on the annealed scale from one to the next.
 const STEPS_BY_LEVERAGE: usize = 40;
@@ -55,6 +59,9 @@ pub(crate) struct RefineOptions {
     pub(crate) rounds: usize,
     /// Relative decrease of the objective that ends a minimisation.
     pub(crate) tolerance: f64,
+    /// Decrease of the objective over [`STRIDE`] steps that ends one as well: along the floor of a valley steps go on and on,
+    /// and gain nothing that tells networks apart.
+    pub(crate) negligible: f64,
 }
 
 /// A refined network.
@@ -183,15 +190,17 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             loss.total(residuals.iter().copied()) + observations.unexpected(network, loss, soft * annealed)
         };
         let mut cost = total(&loss, annealed, &descent.residuals, &network);
-        let mut calm = 0;
-        for _ in 0..options.steps {
+        let (mut calm, mut gained) = (0, 0.0);
+        for step in 1..=options.steps {
             if monitor.is_cancelled() {
                 break;
             }
             descent.normal.linearise(observations, &network, &descent.residuals, &loss, soft * annealed);
             let by = |residuals: &[f64], network: &Network<D>| total(&loss, annealed, residuals, network);
             let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, by, monitor) else { break };
-            let improved = lower.is_some_and(|next| cost - next > options.tolerance * cost.abs());
+            let gain = lower.map_or(0.0, |next| cost - next);
+            let improved = gain > options.tolerance * cost.abs();
+            gained += gain;
             annealed *= options.anneal_factor;
             let before = loss.scale;
             loss.scale = match options.scale {
@@ -201,8 +210,11 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             cost = total(&loss, annealed, &descent.residuals, &network);
             let settled = (loss.scale - before).abs() <= 1e-4 * loss.scale;
             calm = if improved || !settled { 0 } else { calm + 1 };
-            if calm == 2 {
+            if calm == 2 || (step % STRIDE == 0 && gained < options.negligible) {
                 break;
+            }
+            if step % STRIDE == 0 {
+                gained = 0.0;
             }
         }
         let objective = cost + self.constant(loss.scale);

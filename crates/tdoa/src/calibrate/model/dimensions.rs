@@ -7,6 +7,7 @@ use crate::calibrate::judge::raised::{RAISED, may_be_raised};
 use crate::calibrate::model::calibrated::{Calibrated, CalibratedError};
 use crate::calibrate::model::errors_chosen::with_errors_chosen;
 use crate::calibrate::model::excluded::plane_is_excluded;
+use crate::calibrate::model::heights_test::InSpace;
 use crate::calibrate::model::known_heights::{KnownHeights, in_plane};
 use crate::calibrate::model::lifted::{from_plane, lifted, unless_stopped};
 use crate::calibrate::model::question::Question;
@@ -117,13 +118,14 @@ fn choose(
     let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
     let is_plain = settled && flat.fits && flat.unique_receivers;
     // Errors of receivers that are told, and not taken out, change nothing of the networks; in space on planar measurements
-    // it takes longest to look for them.
+    // it takes longest to look for them, and to tell how sure the network is.
     if is_plain
         && options.receiver_delays == ReceiverDelays::None
         && let Some(raised) = &raised
-        && let Some(raised) = unless_stopped(raised.clone().without_reflections().and_then(Draft::judged))?
+        && let Some(raised) = unless_stopped(raised.clone().without_reflections())?
+        && let Some(raised) = unless_stopped(InSpace::likeliest(&raised))?.flatten()
     {
-        let test = question.compare(&flat, &raised);
+        let test = question.test(&flat, &raised);
         if !test.is_space() {
             return Ok(Calibrated::Plane(planar(flat, test)));
         }

@@ -72,7 +72,7 @@ pub(super) fn lifted<'a>(
     let receivers: Vec<Option<[f64; 2]>> = flat.state.ranked[0].network.receivers.iter().copied().map(Some).collect();
     let names = flat.state.measured.receiver_names();
     let source = Lifted { names, receivers: &receivers, size: spread(receivers.iter().flatten()) };
-    unless_stopped(Draft::searched(measured, options, &[&source], monitor))
+    unless_stopped(Draft::roughly(measured, options, &source, monitor))
 }
 
 /// What there is; stopping is an error, failing is none.

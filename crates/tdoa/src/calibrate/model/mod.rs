@@ -5,6 +5,7 @@ pub(crate) mod dimensions;
 pub(crate) mod errors_chosen;
 mod excluded;
 mod explained;
+mod heights_test;
 mod known_heights;
 mod lifted;
 mod question;

@@ -3,26 +3,14 @@
 use crate::calibrate::judge::dimension_test::DimensionTest;
 use crate::calibrate::model::calibrated::CalibratedError;
 use crate::calibrate::model::explained::explained_by_errors;
+use crate::calibrate::model::heights_test::InSpace;
 use crate::calibrate::model::lifted::{Known, from_sources, unless_stopped};
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::hypotheses::Hypotheses;
-use crate::calibrate::search::truncated_cost::truncated;
 use crate::calibrate::steps::{Draft, calibrate_with};
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-
-/// Probability of the quantile that the gain of heights must exceed.
-const QUANTILE: f64 = 1.0 - 1e-4;
-
-/// Heights enter distances by their squares, and the search takes the best of many networks: gains of
-/// planar networks have about twice the mean that as many unknowns of a linear model would give (measured
-/// on 20 to 30 planar networks of six kinds; `tdoa experiment dimension` counts).
-const BENT: f64 = 2.0;
-
-/// Deviations of measurements are at least this share of the network's size: exact ones have no noise.
-const LEAST_DEVIATION: f64 = 1e-6;
 
 /// Measurements of which the plane or space is asked.
 pub(super) struct Question<'a> {
@@ -104,35 +92,14 @@ impl Question<'_> {
         unless_stopped(calibrate_with(self.measured, &options, &[&Known(flat)], self.monitor))
     }
 
-    /// The likelihood ratio of space and plane, over the measurements that both have, with the deviation that
-    /// is given or left in space. Outliers cost the same in both.
+    /// The likelihood ratio of a calibration in space and one in the plane.
     pub(super) fn compare(&self, flat: &Calibration, whole: &Calibration<3>) -> DimensionTest {
-        let Question { measured, in_space: options, .. } = *self;
-        let deviation = whole.sigma.max(LEAST_DEVIATION * whole.extent().unwrap_or(0.0));
-        let (mut in_plane, mut in_space) = (0.0, 0.0);
-        for (i, j, residual) in whole.residuals.iter() {
-            let Some(other) = flat.residuals.get(i, j) else { continue };
-            let cost = |length: f64| truncated(length / (deviation * measured.sigma(i, j).unwrap_or(1.0)));
-            in_plane += cost(other.length);
-            in_space += cost(residual.length);
-        }
-        let located = whole.receivers.iter().flatten().count() + whole.transmitters.iter().flatten().count();
-        // Heights, but for those of a plane that moves.
-        let heights = located.saturating_sub(3).max(1) as f64;
-        let given = options.sigma.is_some() || measured.knows_sigmas();
-        let quantile = if given {
-            ChiSquared::new(heights).ok().map(|all| all.inverse_cdf(QUANTILE))
-        } else {
-            // Without measurements left over there is no deviation to compare with.
-            let left = whole.redundancy as f64;
-            FisherSnedecor::new(heights, left).ok().map(|all| heights * all.inverse_cdf(QUANTILE))
-        };
-        let of_heights = whole.dimension_test.unwrap_or_default();
-        DimensionTest {
-            evidence: of_heights.evidence,
-            change: of_heights.change,
-            gain: Some(in_plane - in_space).filter(|gain| gain.is_finite()),
-            needed: quantile.map(|quantile| 0.5 * BENT * quantile).filter(|needed| needed.is_finite()),
-        }
+        self.test(flat, &InSpace::of(whole))
+    }
+
+    /// The likelihood ratio of a network in space and a calibration in the plane.
+    pub(super) fn test(&self, flat: &Calibration, space: &InSpace) -> DimensionTest {
+        let is_given = self.in_space.sigma.is_some() || self.measured.knows_sigmas();
+        space.beside(flat, self.measured, is_given)
     }
 }

@@ -50,12 +50,12 @@ const CLOSE: f64 = 5.0;
 const FAR: f64 = 2.0;
 
 /// Heights and the logarithm of their marginal likelihood.
-pub(super) type Mode<const D: usize> = (f64, Heights<D>);
+pub(crate) type Mode<const D: usize> = (f64, Heights<D>);
 
 impl<const D: usize> State<'_, D> {
     /// Heights near the best networks, the likeliest first, and the logarithm of the marginal likelihood of the likeliest
     /// network without heights.
-    pub(super) fn height_modes(&self) -> Result<(Vec<Mode<D>>, f64), CalibrateError<D>> {
+    pub(crate) fn height_modes(&self) -> Result<(Vec<Mode<D>>, f64), CalibrateError<D>> {
         let search = self.search_of_heights();
         let Modes { observations, known, limit, .. } = search;
         let starts = self.ranked.iter().take(NETWORKS).filter_map(|RefinedNetwork { network, .. }| {
@@ -67,7 +67,7 @@ impl<const D: usize> State<'_, D> {
             starts.extend(on_a_table(network).map(|table| (kept, table)));
             Some(starts)
         });
-        let starts: Vec<(Observations<D>, Network<D>)> = starts.flatten().collect();
+        let starts = self.likeliest_start(starts.flatten().collect())?;
         let mut modes: Vec<Mode<D>> = Vec::new();
         let mut of_plane = f64::NEG_INFINITY;
         for found in each(&starts, |(kept, start)| search.with_plane(kept, start))? {
@@ -106,7 +106,12 @@ impl<const D: usize> State<'_, D> {
     }
 
     fn search_of_heights(&self) -> Modes<'_, D> {
-        let State { options, monitor, known, deviation, ref observations, .. } = *self;
+        self.search_of_heights_among(&self.observations)
+    }
+
+    /// A search of heights among some of the measurements.
+    pub(super) fn search_of_heights_among<'o>(&'o self, observations: &'o Observations<D>) -> Modes<'o, D> {
+        let State { options, monitor, known, deviation, .. } = *self;
         let sigma = known.unwrap_or(deviation);
         let (limit, width) = (options.inlier_threshold * sigma, self.ranked[0].network.size());
         Modes { observations, known, sigma, limit, width, monitor }
@@ -114,7 +119,7 @@ impl<const D: usize> State<'_, D> {
 }
 
 /// The results of all, in their order.
-fn each<T: Sync, R: Send>(
+pub(super) fn each<T: Sync, R: Send>(
     all: &[T],
     of: impl Fn(&T) -> Result<R, Cancelled> + Sync + Send,
 ) -> Result<Vec<R>, Cancelled> {
@@ -125,7 +130,7 @@ fn each<T: Sync, R: Send>(
 }
 
 /// Measurements among which heights are looked for.
-struct Modes<'a, const D: usize> {
+pub(super) struct Modes<'a, const D: usize> {
     observations: &'a Observations<D>,
     /// Deviation of the measurements if it is given, and one near it.
     known: Option<f64>,
@@ -162,7 +167,7 @@ impl<const D: usize> Modes<'_, D> {
     }
 
     /// The heights near a network, and the likelihood of the likeliest planar network near it.
-    fn with_plane(
+    pub(super) fn with_plane(
         &self,
         kept: &Observations<D>,
         start: &Network<D>,

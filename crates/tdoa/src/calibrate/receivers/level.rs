@@ -4,6 +4,7 @@
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::neighbours::{Neighbour, Reason, each_once};
 use crate::calibrate::options::{CalibrateError, Errors};
+use crate::calibrate::receivers::height_modes::Mode;
 use crate::calibrate::state::State;
 use crate::flatness::levelled;
 use crate::refine::Heights;
@@ -19,26 +20,29 @@ const NEARLY_FLAT: f64 = 0.25;
 const PLANE: f64 = 3.0;
 
 impl<const D: usize> State<'_, D> {
+    /// Whether heights follow from the measurements alone.
+    pub(crate) fn has_heights_of_its_own(&self) -> bool {
+        let is_one_sided = self.options.errors == Errors::OneSided;
+        D == 3 && self.anchors.is_none() && !self.has_clocks_of_receivers() && !is_one_sided
+    }
+
     /// Refines with heights that are expected to be near the plane of the nodes, where the measurements do not tell
     /// nearly all of them.
     pub(crate) fn level(&mut self) -> Result<(), CalibrateError<D>> {
-        let State { options, known, .. } = *self;
-        if D != 3 || self.anchors.is_some() || self.has_clocks_of_receivers() || options.errors == Errors::OneSided {
+        if !self.has_heights_of_its_own() {
             return Ok(());
         }
-        let (modes, of_plane) = self.height_modes()?;
-        let Some((_, heights)) = modes.first() else { return Ok(()) };
-        let of_heights = modes.iter().map(|(evidence, _)| *evidence).fold(f64::NEG_INFINITY, f64::max);
-        let [change, in_deviations] = heights.change(&self.observations);
-        let evidence = Some(of_heights - of_plane).filter(|evidence| evidence.is_finite());
-        self.dimension_test = DimensionTest { evidence, change: Some(in_deviations), ..DimensionTest::default() };
+        let (known, modes) = (self.known, self.height_modes()?);
+        let Some((heights, test)) = self.likeliest_heights(&modes) else { return Ok(()) };
+        self.dimension_test = test;
         let nodes = heights.network.receivers.len() + heights.network.transmitters.len();
         // What is told without the expectation of two levels.
         let told = self.on_one_level(heights)?.map_or(heights.told, |plain| plain.told);
         if told >= TOLD * (nodes as f64 - PLANE) || heights.flatness() > NEARLY_FLAT {
             return Ok(());
         }
-        self.neighbours.extend(neighbours_of_the_first(&modes));
+        self.neighbours.extend(neighbours_of_the_first(&modes.0));
+        let [change, _] = heights.change(&self.observations);
         // Under the likeliest deviation alone the heights of few receivers would be too certain.
         let mut heights = heights.clone();
         heights.receivers =
@@ -59,6 +63,18 @@ impl<const D: usize> State<'_, D> {
             change,
         });
         self.finish(known.unwrap_or(heights.deviation))
+    }
+
+    /// The likeliest heights, and what they say of a third coordinate.
+    pub(crate) fn likeliest_heights<'m>(
+        &self,
+        (modes, of_plane): &'m (Vec<Mode<D>>, f64),
+    ) -> Option<(&'m Heights<D>, DimensionTest)> {
+        let (_, heights) = modes.first()?;
+        let of_heights = modes.iter().map(|(evidence, _)| *evidence).fold(f64::NEG_INFINITY, f64::max);
+        let evidence = Some(of_heights - of_plane).filter(|evidence| evidence.is_finite());
+        let [_, change] = heights.change(&self.observations);
+        Some((heights, DimensionTest { evidence, change: Some(change), ..DimensionTest::default() }))
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod echo;
 pub(crate) mod errors;
 pub(crate) mod evidence;
 pub(crate) mod height_modes;
+mod height_starts;
 pub(crate) mod known_positions;
 pub(crate) mod level;
 pub(crate) mod moves;

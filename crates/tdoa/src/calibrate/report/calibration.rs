@@ -19,7 +19,7 @@ use crate::calibrate::report::truth::Truth;
 use crate::clocks::Emissions;
 use crate::degeneracy::Usable;
 use crate::observations::Node;
-use crate::points::{distance, minus};
+use crate::points::{extent, minus};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::borrow::Cow;
@@ -263,8 +263,7 @@ impl<const D: usize> Calibration<D> {
     /// located.
     pub fn extent(&self) -> Option<f64> {
         let located: Vec<[f64; D]> = self.receivers.iter().flatten().copied().collect();
-        let pairs = located.iter().enumerate().flat_map(|(k, a)| located[..k].iter().map(|b| distance(*a, *b)));
-        pairs.reduce(f64::max)
+        extent(&located)
     }
 
     /// Systematic errors of the receivers, if they [matter](SystematicErrors::matter): the covariances

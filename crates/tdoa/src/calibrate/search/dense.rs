@@ -19,6 +19,9 @@ use hc::Monitor;
 /// No measurement is trusted beyond this share of the network's diameter.
 pub(crate) const RESOLUTION: f64 = 1e-9;
 
+/// Networks of a part of the nodes that are extended to all of them, at most.
+const COMPLETED: usize = 4;
+
 /// Searches networks for the measurements of a state, which has none yet.
 pub(crate) fn search_whole<const D: usize>(
     state: &mut State<'_, D>,
@@ -83,7 +86,8 @@ fn search<const D: usize>(state: &mut State<'_, D>, sources: &[&dyn Hypotheses<D
     state.ranked = if complete_part {
         close.collect()
     } else {
-        complete(&state.observations, &part, close.take(4), &refine, monitor)?
+        let most = if state.is_rough { 1 } else { COMPLETED };
+        complete(&state.observations, &part, close.take(most), &refine, monitor)?
     };
     let Some(scale) = state.ranked.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));

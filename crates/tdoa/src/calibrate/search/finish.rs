@@ -10,6 +10,9 @@ use crate::loss::CAUCHY;
 use crate::observations::Observations;
 use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
 
+/// Decrease of the negative log-likelihood that is none for rough networks.
+const NEGLIGIBLE: f64 = 0.05;
+
 impl<const D: usize> State<'_, D> {
     /// Compares what is known of clocks and distances with measurements of this deviation.
     fn take_deviation(&mut self, deviation: f64) {
@@ -45,7 +48,11 @@ impl<const D: usize> State<'_, D> {
         }
         let mut refiner = NetworkRefiner::new(observations, 1.0, monitor);
         let mut deviation = first;
-        let turns = if known { 1 } else { 4 };
+        let turns = match (known, self.is_rough) {
+            (true, _) => 1,
+            (false, true) => 2,
+            (false, false) => 4,
+        };
         for turn in 0..turns {
             let refine = RefineOptions {
                 scale: Some(CAUCHY * deviation),
@@ -53,6 +60,8 @@ impl<const D: usize> State<'_, D> {
                 floor,
                 steps: if turn + 1 == turns { 100 } else { 15 },
                 tolerance: if turn + 1 == turns { 1e-12 } else { 1e-6 },
+                negligible: if self.is_rough { NEGLIGIBLE * 2.0 / (CAUCHY * CAUCHY) } else { 0.0 },
+                rounds: if self.is_rough && turn > 0 { 0 } else { SEARCH.rounds },
                 ..SEARCH
             };
             // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; the objective lacks the factor and has

@@ -22,6 +22,7 @@ const ADJUSTMENT: RefineOptions = RefineOptions {
     steps: 60,
     rounds: 0,
     tolerance: 1e-14,
+    negligible: 0.0,
 };
 
 /// Columns of measurements, and how they were made: in units of `unit`, less `means`.
