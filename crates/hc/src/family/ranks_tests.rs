@@ -148,9 +148,10 @@ fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
         assert!(found[1..].iter().all(|other| *other == Ok(None)));
         found[0].clone().unwrap().unwrap()
     };
-    // Cancelled on the second side of the first loop.
+    // Cancelled on the second side of the first loop; paths that have come back by then may have found solutions.
     let cancelled = run(3, &Monitor::asking(|progress| progress.done >= 5000));
-    assert_eq!((cancelled.stopped, cancelled.fibre), (Stopped::Cancelled, first.clone()));
+    assert_eq!(cancelled.stopped, Stopped::Cancelled);
+    assert!(cancelled.fibre.solutions.starts_with(&first.solutions) && cancelled.fibre.len() < 4225);
     assert_eq!(status(folder.path()).unwrap().records, 1);
     assert_eq!(run(2, &Monitor::default()), expected);
     assert_eq!(run(1, &Monitor::default()), expected);

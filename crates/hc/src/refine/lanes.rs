@@ -52,6 +52,11 @@ impl<'a, E: Evaluate> LaneRefiners<'a, E> {
         idle().push(refiner);
         result
     }
+
+    /// Gives back the memory of all refiners.
+    pub(crate) fn release(&self) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
 }
 
 impl<'a, E: Evaluate> LaneRefiner<'a, E> {
@@ -88,7 +93,9 @@ impl<'a, E: Evaluate> LaneRefiner<'a, E> {
 
     /// [`Refiner::refine`] for points, in their order; each result depends on its own point alone.
     pub(crate) fn refine(&mut self, points: &[&[Complex64]]) -> Vec<Refined> {
-        points.chunks(Lanes8::LANES).flat_map(|points| self.refine_eight(points)).collect()
+        let mut refined = Vec::with_capacity(points.len());
+        points.chunks(Lanes8::LANES).for_each(|points| refined.extend(self.refine_eight(points)));
+        refined
     }
 
     fn refine_eight(&mut self, points: &[&[Complex64]]) -> Vec<Refined> {

@@ -12,7 +12,10 @@ use crate::ranks::{RanksError, Shareable, Task, Worker};
 use crate::refine::{Refined, Refiner};
 use crate::runner::Round;
 use crate::start::{Source, StartSolutions};
-use crate::threads::{IntoParallelIterator, ParallelIterator};
+use crate::threads::IntoParallelIterator;
+// Without threads, iterators have `map` of their own.
+#[cfg(feature = "threads")]
+use crate::threads::ParallelIterator;
 use crate::tolerances::{ends, same};
 use crate::tracker::{PathEnd, PathSet, TrackerOptions};
 use num_complex::Complex64;
@@ -21,6 +24,9 @@ use serde::{Deserialize, Serialize};
 
 /// Number of ends that one thread refines at a time.
 const PART: usize = 64;
+
+/// Number of paths beside which it takes no time to make refiners anew.
+const MANY: usize = 1024;
 
 impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn settings(&self, round: Round) -> TrackerOptions {
@@ -72,7 +78,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     }
 
     /// How tracked paths end: regularly, where refinement says so, or not yet.
-    fn ends_of(&self, paths: &PathSet, reached: &StartSolutions) -> Vec<Ending> {
+    fn ends_of(&self, paths: &PathSet, reached: &StartSolutions) -> impl Iterator<Item = Ending> {
         let Route { refiners, target, .. } = self.route;
         let arrived: Vec<usize> = (0..paths.len()).filter(|&k| paths.results()[k].end == PathEnd::Success).collect();
         let refined = |part: usize| {
@@ -89,8 +95,12 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         };
         let regular: Vec<Vec<Option<Refined>>> =
             (0..arrived.len().div_ceil(PART)).into_par_iter().map(refined).collect();
+        if paths.len() >= MANY {
+            // Their memory would be held while other paths are tracked.
+            refiners.release();
+        }
         let mut regular = regular.into_iter().flatten();
-        let ends = paths.iter().map(|(result, point)| match result.end {
+        paths.iter().map(move |(result, point)| match result.end {
             // Once more up to where the endgame begins, if not regular.
             PathEnd::Success => regular
                 .next()
@@ -98,8 +108,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
                 .map_or_else(|| Ending::Undecided { start: reached.point(result.path).to_vec() }, Ending::Regular),
             PathEnd::Singular => Ending::Open { t: result.t, point: point.to_vec() },
             _ => Ending::Lost,
-        });
-        ends.collect()
+        })
     }
 
     /// Takes open paths through the endgame. Returns one record per path, in order.
