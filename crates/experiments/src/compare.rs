@@ -1,5 +1,6 @@
 //! `cargo xtask compare`: this project beside the peers that are installed, in one run.
 
+mod curves;
 // The families of systems are those of the tests.
 #[path = "../../hc/tests/all/common/generators.rs"]
 mod generators;

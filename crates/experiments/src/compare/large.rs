@@ -1,6 +1,7 @@
 //! Large systems: all solutions with all threads, beside figures that others have published.
 
-use super::generators::{cyclic, katsura, tangent_conics, tritangents};
+use super::curves::{tangent_conics, tritangents};
+use super::generators::{cyclic, katsura};
 use super::program::{Plan, Run, Tools, run, run_to};
 use crate::workspace;
 use anyhow::{Context, Result};

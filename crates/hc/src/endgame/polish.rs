@@ -2,12 +2,9 @@
 
 use super::legs::{Leg, Legs};
 use super::walker::Sample;
-use crate::linalg::Lu;
-use crate::refine::{Refiner, measure, size_sqr, weight_sqr};
+use crate::refine::LaneNewton;
 use crate::tolerances::refinement;
-use crate::tracker::Precise;
 use num_complex::Complex64;
-use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Lane, Lanes8, Scalar};
 
 /// The end of a leg, or of a piece of it.
@@ -25,19 +22,10 @@ pub(super) struct LegEnd<'a> {
 /// So many are polished at a time.
 pub(super) const LANES: usize = Lanes8::LANES;
 
-/// Newton's method with one Jacobian, in lanes. What that does not bring to the last digit is for the
-/// [`Refiner`].
+/// Newton's method with one Jacobian, in lanes. What that does not bring to the last digit is for its
+/// [refiner](LaneNewton::refiner).
 pub(super) struct Polisher<'a, E: Evaluate> {
-    system: &'a E,
-    refiner: Refiner<'a, E>,
-    memory: E::Memory<Lanes8>,
-    precise: Precise<E, Lanes8>,
-    lu: Lu<Lanes8>,
-    x: Vec<Lanes8>,
-    p: Vec<Lanes8>,
-    values: Vec<Lanes8>,
-    jacobian: Vec<Lanes8>,
-    squares: Vec<<Lanes8 as Lane>::Real>,
+    newton: LaneNewton<'a, E>,
     /// The parameters of one leg.
     row: Vec<ComplexDd>,
 }
@@ -45,21 +33,7 @@ pub(super) struct Polisher<'a, E: Evaluate> {
 impl<'a, E: Evaluate> Polisher<'a, E> {
     /// A polisher for a square system.
     pub(super) fn new(system: &'a E) -> Self {
-        let (n, m, isa) = (system.variables(), system.parameters(), Isa::detect());
-        let zeros = |count: usize| vec![Lanes8::zero(); count];
-        Polisher {
-            system,
-            refiner: Refiner::new(system),
-            memory: system.memory(isa),
-            precise: Precise::new(system, isa),
-            lu: Lu::of_jacobian(system, isa),
-            x: zeros(n),
-            p: zeros(m),
-            values: zeros(n),
-            jacobian: zeros(n * n),
-            squares: vec![Lanes8::real(1.0); n],
-            row: vec![ComplexDd::zero(); m],
-        }
+        Polisher { newton: LaneNewton::new(system), row: vec![ComplexDd::zero(); system.parameters()] }
     }
 
     /// Polishes one to eight ends; each result depends on its own end alone.
@@ -75,11 +49,11 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
                 legs.precise(leg, u, &mut self.row);
             }
             let Some(accuracy) = accuracy else {
-                let (accuracy, blur) = self.refiner.polish_and_blur(&self.row, &mut point, blurs);
+                let (accuracy, blur) = self.newton.refiner.polish_and_blur(&self.row, &mut point, blurs);
                 return Sample { point, accuracy, blur };
             };
-            point.iter_mut().zip(&self.x).for_each(|(z, x)| *z = x.get(l));
-            let blur = if blurs { self.refiner.blur(&self.row, &point, false) } else { Vec::new() };
+            point.iter_mut().zip(&self.newton.x).for_each(|(z, x)| *z = x.get(l));
+            let blur = if blurs { self.newton.refiner.blur(&self.row, &point, false) } else { Vec::new() };
             Sample { point, accuracy, blur }
         });
         samples.collect()
@@ -94,21 +68,22 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
     /// twice the second is to the first. Where the second corrects rounding errors of the first, that is too
     /// much, and the tracker's estimate of the constant serves, with a margin.
     fn newton(&mut self, legs: &Legs<'_>, lanes: &[LegEnd<'_>; LANES]) -> [Option<f64>; LANES] {
+        let newton = &mut self.newton;
         let mut t = <Lanes8 as Lane>::Extended::zero();
         for (l, &LegEnd { leg, u, point, .. }) in lanes.iter().enumerate() {
             let [re, im] = ComplexDd::new(legs.legs[leg].at(u)).parts();
             Lanes8::set_extended(&mut t, l, re, im);
-            self.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
+            newton.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
         }
-        let precise_p = &mut self.precise.p;
+        let precise_p = &mut newton.precise.p;
         legs.segment.extended(&t, precise_p);
-        self.p.iter_mut().zip(precise_p).for_each(|(p, precise)| *p = Lanes8::rounded(precise));
-        self.system.jacobian(&mut self.memory, &self.x, &self.p, &mut self.values, &mut self.jacobian);
-        measure(&self.x, &mut self.squares, weight_sqr);
-        self.lu.factor(&self.jacobian, &self.squares);
-        let first = self.correct();
-        self.precise.overwrite(self.system, [u16::MAX, 0], [&self.x, &self.x], &mut self.values);
-        let second = self.correct();
+        newton.p.iter_mut().zip(precise_p).for_each(|(p, precise)| *p = Lanes8::rounded(precise));
+        newton.factor();
+        let first = newton.correct();
+        newton.take(u16::MAX);
+        newton.evaluate_precisely();
+        let second = newton.correct();
+        newton.take(u16::MAX);
         std::array::from_fn(|l| {
             let (first, second) = (first.as_ref()[l].sqrt(), second.as_ref()[l].sqrt());
             let most = refinement::OMEGA_MARGIN * lanes[l].omega.max(1.0) * first;
@@ -118,31 +93,14 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
             (first <= refinement::NEAR && third <= f64::EPSILON).then_some(third)
         })
     }
-
-    /// Takes the residuals in `values` for a correction; returns the squares of its relative sizes.
-    fn correct(&mut self) -> <Lanes8 as Lane>::Real {
-        self.lu.solve(&mut self.values);
-        for (x, dx) in self.x.iter_mut().zip(&self.values) {
-            *x = Lanes8::sub(x, dx);
-        }
-        measure(&self.x, &mut self.squares, size_sqr);
-        let mut largest = Lanes8::real(0.0);
-        for (dx, size) in self.values.iter().zip(&self.squares) {
-            for ((largest, dx), size) in largest.as_mut().iter_mut().zip(dx.norm_sqr().as_ref()).zip(size.as_ref()) {
-                let relative = dx / size;
-                // Once NaN, always NaN.
-                *largest = if relative <= *largest || largest.is_nan() { *largest } else { relative };
-            }
-        }
-        largest
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Leg, LegEnd, Legs, Polisher, Refiner};
+    use super::{Leg, LegEnd, Legs, Polisher};
     use crate::homotopy::{ParameterPath, Segment};
     use crate::random::Random;
+    use crate::refine::Refiner;
     use num_complex::Complex64;
     use poly::parse;
 

@@ -1,32 +1,21 @@
 //! Many points for the same parameters, refined eight at a time to the same bits as one by one.
 
+use super::lane_newton::LaneNewton;
 use super::polished::Polished;
 use super::refined::Refined;
 use super::refiner::Refiner;
-use super::sizes::{measure, size_sqr, sizes, weight_sqr};
-use crate::linalg::Lu;
+use super::sizes::sizes;
 use crate::tolerances::refinement;
-use crate::tracker::Precise;
 use num_complex::Complex64;
-use poly::simd::Isa;
 use poly::{Evaluate, Lane, Lanes8, Scalar};
 use std::sync::{Mutex, PoisonError};
 
 /// Newton's method in lanes for points near which one Jacobian is enough, as it is at nearly all regular ends. What needs
 /// more is for the [`Refiner`].
 pub(crate) struct LaneRefiner<'a, E: Evaluate> {
-    system: &'a E,
-    refiner: Refiner<'a, E>,
-    memory: E::Memory<Lanes8>,
-    precise: Precise<E, Lanes8>,
-    lu: Lu<Lanes8>,
-    /// The parameters, and the same in all lanes.
+    newton: LaneNewton<'a, E>,
+    /// The parameters.
     given: Vec<Complex64>,
-    p: Vec<Lanes8>,
-    x: Vec<Lanes8>,
-    values: Vec<Lanes8>,
-    jacobian: Vec<Lanes8>,
-    squares: Vec<<Lanes8 as Lane>::Real>,
 }
 
 /// Refiners of one system, as many as threads have asked for. The members of a family may have so few solutions that
@@ -61,26 +50,13 @@ impl<'a, E: Evaluate> LaneRefiners<'a, E> {
 
 impl<'a, E: Evaluate> LaneRefiner<'a, E> {
     fn new(system: &'a E) -> Self {
-        let (n, isa) = (system.variables(), Isa::detect());
-        let zeros = |count: usize| vec![Lanes8::zero(); count];
-        LaneRefiner {
-            system,
-            refiner: Refiner::new(system),
-            memory: system.memory(isa),
-            precise: Precise::new(system, isa),
-            lu: Lu::of_jacobian(system, isa),
-            given: vec![Complex64::default(); system.parameters()],
-            p: zeros(system.parameters()),
-            x: zeros(n),
-            values: zeros(n),
-            jacobian: zeros(n * n),
-            squares: vec![Lanes8::real(1.0); n],
-        }
+        LaneRefiner { newton: LaneNewton::new(system), given: vec![Complex64::default(); system.parameters()] }
     }
 
     fn set_parameters(&mut self, p: &[Complex64]) {
         self.given.copy_from_slice(p);
-        for ((&z, p), precise) in p.iter().zip(&mut self.p).zip(&mut self.precise.p) {
+        let LaneNewton { p: lanes, precise, .. } = &mut self.newton;
+        for ((&z, p), precise) in p.iter().zip(lanes).zip(&mut precise.p) {
             *p = Lanes8::from_c64(z);
             *precise = Lanes8::extended(p, &Lanes8::zero());
         }
@@ -88,7 +64,7 @@ impl<'a, E: Evaluate> LaneRefiner<'a, E> {
 
     /// What refines points one by one.
     pub(crate) fn single(&mut self) -> &mut Refiner<'a, E> {
-        &mut self.refiner
+        &mut self.newton.refiner
     }
 
     /// [`Refiner::refine`] for points, in their order; each result depends on its own point alone.
@@ -101,46 +77,33 @@ impl<'a, E: Evaluate> LaneRefiner<'a, E> {
     fn refine_eight(&mut self, points: &[&[Complex64]]) -> Vec<Refined> {
         // Lanes without a point have the last one.
         for l in 0..Lanes8::LANES {
-            self.x.iter_mut().zip(points[l.min(points.len() - 1)]).for_each(|(x, z)| x.set(l, *z));
+            self.newton.x.iter_mut().zip(points[l.min(points.len() - 1)]).for_each(|(x, z)| x.set(l, *z));
         }
         let polished = self.polish(points.len());
-        self.system.values(&mut self.memory, &self.x, &self.p, &mut self.values);
+        let LaneNewton { system, memory, x, p, values, .. } = &mut self.newton;
+        system.values(memory, x, p, values);
         let judged = |(l, (&point, polished)): (usize, (&&[Complex64], Option<Polished>))| {
             let found = polished.and_then(|polished| self.judge(l, &polished));
-            found.unwrap_or_else(|| self.refiner.refine(&self.given, point))
+            found.unwrap_or_else(|| self.newton.refiner.refine(&self.given, point))
         };
         points.iter().zip(polished).enumerate().map(judged).collect()
     }
 
     /// Corrects the points in the first lanes, as [`Refiner`] does; `None` where that takes another Jacobian.
     fn polish(&mut self, lanes: usize) -> [Option<Polished>; Lanes8::LANES] {
-        self.system.jacobian(&mut self.memory, &self.x, &self.p, &mut self.values, &mut self.jacobian);
-        measure(&self.x, &mut self.squares, weight_sqr);
-        self.lu.factor(&self.jacobian, &self.squares);
+        self.newton.factor();
         let mut polished = [Polished::BEGUN; Lanes8::LANES];
         let (mut left, mut serves) = ((1u16 << lanes) - 1, false);
         for _ in 0..refinement::ITERATIONS {
-            self.precise.overwrite(self.system, [u16::MAX, 0], [&self.x, &self.x], &mut self.values);
-            self.lu.solve(&mut self.values);
-            let next: Vec<Lanes8> = self.x.iter().zip(&self.values).map(|(x, d)| Lanes8::sub(x, d)).collect();
-            measure(&next, &mut self.squares, size_sqr);
-            let mut lengths = [0.0f64; Lanes8::LANES];
-            for (d, square) in self.values.iter().zip(&self.squares) {
-                for ((size, d), square) in lengths.iter_mut().zip(d.norm_sqr().as_ref()).zip(square.as_ref()) {
-                    let relative = d / square;
-                    // Once NaN, always NaN.
-                    *size = if relative <= *size || size.is_nan() { *size } else { relative };
-                }
-            }
+            self.newton.evaluate_precisely();
+            let squares = self.newton.correct();
             let mut taken = 0u16;
             for (l, polished) in polished.iter_mut().enumerate().filter(|(l, _)| left >> l & 1 == 1) {
-                if polished.shrinks(lengths[l].sqrt(), serves) {
+                if polished.shrinks(squares.as_ref()[l].sqrt(), serves) {
                     taken |= 1 << l;
                 }
             }
-            for (x, next) in self.x.iter_mut().zip(&next) {
-                *x = Lanes8::select(x, next, taken);
-            }
+            self.newton.take(taken);
             let goes_on = |l: usize| {
                 let accuracy = polished[l].accuracy;
                 taken >> l & 1 == 1 && accuracy > f64::EPSILON && accuracy <= refinement::NEAR
@@ -157,12 +120,12 @@ impl<'a, E: Evaluate> LaneRefiner<'a, E> {
     /// Judges the polished point in a lane by the values there, with the Jacobian from where it was before; `None` if that
     /// does not serve.
     fn judge(&mut self, l: usize, polished: &Polished) -> Option<Refined> {
-        let point: Vec<Complex64> = self.x.iter().map(|x| x.get(l)).collect();
-        let single = &mut self.refiner;
+        let LaneNewton { refiner: single, x, values, jacobian, lu, .. } = &mut self.newton;
+        let point: Vec<Complex64> = x.iter().map(|x| x.get(l)).collect();
         sizes(&point, &mut single.squares);
-        single.values.iter_mut().zip(&self.values).for_each(|(to, from)| *to = from.get(l));
-        single.jacobian.iter_mut().zip(&self.jacobian).for_each(|(to, from)| *to = from.get(l));
-        single.lu.take_lane(&self.lu, l);
+        single.values.iter_mut().zip(&*values).for_each(|(to, from)| *to = from.get(l));
+        single.jacobian.iter_mut().zip(&*jacobian).for_each(|(to, from)| *to = from.get(l));
+        single.lu.take_lane(lu, l);
         let judged = single.judge_values();
         let mut refined = Refined { point, ..Refined::default() };
         polished.tell(judged, &mut refined);
@@ -214,7 +177,7 @@ mod tests {
         // Lanes take all that is as near as tracked ends are.
         let (n, x) = (8, first.clone());
         for l in 0..n {
-            lanes.x.iter_mut().zip(x[l]).for_each(|(to, from)| to.set(l, *from));
+            lanes.newton.x.iter_mut().zip(x[l]).for_each(|(to, from)| to.set(l, *from));
         }
         let is_done = lanes.polish(n).map(|polished| polished.is_some());
         assert_eq!(is_done, [true, true, true, true, true, false, false, false]);

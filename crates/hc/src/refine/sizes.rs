@@ -11,7 +11,7 @@ pub(super) fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
 }
 
 /// The square of the size of a coordinate as a weight, from its square and that of the largest.
-pub(crate) fn weight_sqr(square: f64, largest: f64) -> f64 {
+pub(super) fn weight_sqr(square: f64, largest: f64) -> f64 {
     square.max(if largest > 0.0 { 1e-8 * largest } else { 1.0 })
 }
 
@@ -24,7 +24,7 @@ pub(super) fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
 }
 
 /// The square of the [size](size) of a coordinate, from its square and that of the largest.
-pub(crate) fn size_sqr(square: f64, largest: f64) -> f64 {
+pub(super) fn size_sqr(square: f64, largest: f64) -> f64 {
     measured(square, largest, 1e-24, 1e-8)
 }
 
@@ -41,7 +41,7 @@ fn measured(size: f64, largest: f64, zero: f64, scale: f64) -> f64 {
 }
 
 /// Squares of sizes, coordinate by coordinate, from their own squares and that of the largest.
-pub(crate) fn measure(x: &[Lanes8], squares: &mut [<Lanes8 as Lane>::Real], size_sqr: impl Fn(f64, f64) -> f64) {
+pub(super) fn measure(x: &[Lanes8], squares: &mut [<Lanes8 as Lane>::Real], size_sqr: impl Fn(f64, f64) -> f64) {
     let mut largest = Lanes8::real(0.0);
     for (x, square) in x.iter().zip(&mut *squares) {
         *square = x.norm_sqr();

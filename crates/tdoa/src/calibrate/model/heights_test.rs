@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// Heights that change distances by less than twice the noise.
+    /// All nodes of a room of 10 m by 8 m are within 0.8 m of height.
     #[test]
     fn many_nodes_show_small_heights() {
         for seed in 0..2 {
