@@ -55,8 +55,7 @@ fn problems(plan: &Plan) -> Vec<Problem> {
 
 /// What a run took.
 fn cells(run: &Run) -> String {
-    let memory = run.megabytes.map_or_else(String::new, |m| format!("{m:.0}"));
-    format!("{:.1} | {:.1} | {memory}", run.seconds, run.work())
+    format!("{:.1} | {:.1}", run.seconds, run.work())
 }
 
 /// Solutions, paths and lost paths.
@@ -70,7 +69,7 @@ pub(super) fn table(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()>
     *text += "\n## Large systems\n\n\
         `hc solve`, or for families `hc monodromy`, which fills a fibre, and `hc track` from it; on all threads, once. Wall-clock and processor \
         seconds are those of the whole process. Others' figures are as they were published, on their machines.\n\n\
-        | system | solutions | why | paths | found | lost | s | processor s | MB | published by others |\n|---|---|---|---|---|---|---|---|---|---|\n";
+        | system | solutions | why | paths | found | lost | s | processor s | published by others |\n|---|---|---|---|---|---|---|---|---|\n";
     let folder = tempfile::tempdir()?;
     let folder = folder.path();
     for Problem { name, text: system, count, source, published } in problems(plan) {
