@@ -21,7 +21,7 @@ pub(crate) enum Answer {
 pub(crate) fn answer(case: &Case, seed: u64) -> Answer {
     let system = hc::poly::parse::phcpack(&case.text).expect("a system");
     let found = solve(&system, &SolveOptions::new().seed(seed)).expect("a system that can be solved");
-    let expected = case.solutions.len() + case.others;
+    let expected = case.solutions.len() + case.others.len();
     if found.paths.failed > 0 || (found.is_empty() && expected > 0) {
         return Answer::Unknown;
     }
@@ -35,7 +35,10 @@ pub(crate) fn answer(case: &Case, seed: u64) -> Answer {
         let nearest = nearest.map(|at| listed.swap_remove(at));
         complete &= nearest.is_some_and(|s| s.multiplicity == *multiplicity && distance(&s.value, point) <= tolerance);
     }
-    complete &= listed.iter().all(|s| s.multiplicity == 1 && s.residual < 1e-12);
+    let mut others: Vec<usize> = listed.iter().map(|s| s.multiplicity).collect();
+    others.sort_unstable();
+    complete &= others == case.others && listed.iter().all(|s| s.residual < 1e-12);
+    complete &= case.real.is_none_or(|real| found.n_real() == real);
     if complete { Answer::Right } else { Answer::Wrong }
 }
 

@@ -14,6 +14,7 @@
 
 mod ending;
 mod laurent;
+mod leading_terms;
 mod legs;
 mod options;
 mod polish;
@@ -27,6 +28,7 @@ use crate::monitor::{Monitor, Stage};
 use crate::threads::{IntoParallelIterator, ParallelIterator};
 use crate::tolerances::endgame;
 use crate::tracker::{PathEnd, PathSet, TrackerOptions, Trackers};
+use leading_terms::LeadingTerms;
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use polish::{LANES, LegEnd, Polisher};
@@ -77,7 +79,9 @@ pub(crate) fn endgame<'a, E: Evaluate>(
     let to_zero = TrackerOptions { min_t: endgame::LEFT_OF_LEG, ..settings.clone() };
     let mut undecided = walkers.len();
     let mut starts: Vec<Complex64> = Vec::new();
+    let mut leading_terms = LeadingTerms::new(trackers.system());
     loop {
+        leading_terms.judge(segment, &mut walkers);
         let live: Vec<usize> = (0..walkers.len()).filter(|&k| walkers[k].is_live()).collect();
         monitor.add((undecided - live.len()) as u64, 0);
         undecided = live.len();
@@ -104,16 +108,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             .filter(|(result, _)| arrives[result.path])
             .map(|(result, point)| LegEnd { leg: result.path, u: result.t, point, omega: result.omega })
             .collect();
-        let polished: Vec<Vec<Sample>> = (0..arrived.len().div_ceil(LANES))
-            .into_par_iter()
-            .map_init(
-                || Polisher::new(trackers.system()),
-                |polisher, part| {
-                    let ends = &arrived[part * LANES..];
-                    polisher.polish(&legs, &ends[..ends.len().min(LANES)])
-                },
-            )
-            .collect();
+        let polished = polished(trackers.system(), &legs, &arrived);
         let mut polished = polished.into_iter().flatten();
         let mut samples = Vec::new();
         for (result, _) in results() {
@@ -129,4 +124,13 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             walker.spend(result.accepted + result.rejected, max_steps);
         }
     }
+}
+
+/// The ends of legs, polished eight at a time on all threads.
+fn polished<E: Evaluate>(system: &E, legs: &Legs<'_>, ends: &[LegEnd<'_>]) -> Vec<Vec<Sample>> {
+    let part = |polisher: &mut Polisher<'_, E>, part: usize| {
+        let ends = &ends[part * LANES..];
+        polisher.polish(legs, &ends[..ends.len().min(LANES)])
+    };
+    (0..ends.len().div_ceil(LANES)).into_par_iter().map_init(|| Polisher::new(system), part).collect()
 }

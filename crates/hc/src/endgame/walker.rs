@@ -45,6 +45,10 @@ pub(super) struct Walker {
     blur: Vec<f64>,
     /// How the path ends by a loop that was not quite clear.
     vague: Option<Ending>,
+    /// How it goes to infinity by a clear loop, until it has been followed far out.
+    diverges: Option<Ending>,
+    /// Whether the equations are to be asked about that.
+    expects: bool,
     middle: Vec<Complex64>,
     end: Option<Ending>,
 }
@@ -117,12 +121,20 @@ impl Walker {
 
     /// At the end of a leg along the radius.
     fn arrive(&mut self, Sample { point, accuracy, blur }: Sample, options: &EndgameOptions) {
+        if self.goes_on_to_infinity(&point)
+            && let Some(end) = self.diverges.take()
+        {
+            return self.settle(end);
+        }
         if self.radius == options.radius && self.middle.is_empty() {
             self.middle = point.clone();
         }
         let largest = largest(&point);
         let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * size(z).max(1e-4 * largest));
-        if blurred(endgame::SHARP) && self.widen_to().is_some_and(|wider| wider <= options.start) {
+        if self.diverges.is_none()
+            && blurred(endgame::SHARP)
+            && self.widen_to().is_some_and(|wider| wider <= options.start)
+        {
             self.widen();
             return;
         }
@@ -150,7 +162,7 @@ impl Walker {
     /// Goes from the point at which the endgame began to a wider circle than the one that was too
     /// deep.
     fn widen(&mut self) {
-        match self.widen_to() {
+        match self.widen_to().filter(|_| self.diverges.is_none()) {
             Some(radius) => {
                 self.deepest = self.radius;
                 self.radius = radius;
@@ -177,7 +189,7 @@ impl Walker {
                     self.shrink(options);
                 }
                 Err(Unclear::TooDeep) => self.lose(),
-                Ok(end) => self.settle(end),
+                Ok(end) => self.conclude(end),
             }
         } else if winding >= self.turns {
             self.shrink(options);
@@ -185,6 +197,53 @@ impl Walker {
             self.samples.extend_from_slice(end);
             self.x.copy_from_slice(end);
         }
+    }
+
+    /// At the end of a clear loop. Where a coefficient is small, a solution is large, and at first its path seems to go
+    /// to infinity.
+    fn conclude(&mut self, end: Ending) {
+        let Ending::Infinite { valuations, winding } = &end else { return self.settle(end) };
+        if let Some(before) = self.diverges.take() {
+            // Far out, coordinates that vanish may be too small to be seen.
+            return self.settle(before);
+        }
+        let steepest = valuations.iter().map(|v| v.unsigned_abs()).max().unwrap_or(1) as f64 / *winding as f64;
+        let n = self.x.len();
+        let first = &self.samples[..n];
+        let radius = self.radius * (endgame::FAR / largest(first).max(1.0)).powf(-1.0 / steepest);
+        if radius >= self.radius {
+            return self.settle(end);
+        }
+        self.x.copy_from_slice(first);
+        self.samples.clear();
+        self.radius = radius.max(endgame::LEAST_RADIUS);
+        self.expects = true;
+        self.diverges = Some(end);
+    }
+
+    /// Time and point of a path that goes to infinity by a loop, if the equations have not been asked about it.
+    pub(super) fn claim(&self) -> Option<(f64, &[Complex64])> {
+        self.expects.then_some((self.at, &self.x))
+    }
+
+    /// Takes what the equations say of that: whether their leading terms cancel. If they do not, the path is followed
+    /// until it is very far out.
+    pub(super) fn judge(&mut self, cancels: bool) {
+        self.expects = false;
+        if cancels && let Some(end) = self.diverges.take() {
+            self.settle(end);
+        }
+    }
+
+    /// Whether a path that goes to infinity by a loop has grown as that says up to a point far out.
+    fn goes_on_to_infinity(&self, far: &[Complex64]) -> bool {
+        let Some(Ending::Infinite { valuations, winding }) = &self.diverges else { return false };
+        let ds = -self.radius.ln() - self.at;
+        let grown = |((&v, a), b): ((&i64, &Complex64), &Complex64)| {
+            let expected = -v as f64 * ds / *winding as f64;
+            v >= 0 || ((size(b) / size(a)).ln() - expected).abs() <= 1.0 + endgame::GROWN * expected
+        };
+        valuations.iter().zip(&self.x).zip(far).all(grown)
     }
 
     /// Notes how the path ends by a loop that is not quite clear. If there are several, the first counts,
@@ -200,6 +259,9 @@ impl Walker {
 
     /// Goes back to where the loop began and on to a smaller one.
     fn shrink(&mut self, options: &EndgameOptions) {
+        if self.diverges.is_some() {
+            return self.lose();
+        }
         let n = self.x.len();
         self.x.copy_from_slice(&self.samples[..n]);
         self.samples.clear();
@@ -223,9 +285,10 @@ impl Walker {
         }
     }
 
-    /// Ends the path without a clear loop, as a vague one says if there was one.
+    /// Ends the path without a clear loop, as a vague one says if there was one. What a clear loop has said does not
+    /// count if the equations deny it.
     fn lose(&mut self) {
-        let vague = self.vague.take();
+        let vague = self.vague.take().filter(|_| self.diverges.is_none());
         self.settle(vague.unwrap_or(Ending::Lost));
     }
 

@@ -30,12 +30,14 @@ pub(crate) fn is_missed(given: &ExactEquations, dimension: usize, monitor: &Moni
     let left = affine.first().map_or(0, |form| form.len() - 1);
     let count = |degree: usize| (1..=degree).fold(1, |count, k| count * (left + k) / k);
     let highest = (1..=EXPONENT as usize).take_while(|&degree| count(degree) <= MONOMIALS).last();
-    highest.is_some_and(|highest| Macaulay::new(&equations, &affine, highest, monitor).reaches_one().unwrap_or(false))
+    highest.is_some_and(|highest| {
+        Macaulay::new(&equations, &affine, highest, WORK, monitor).reaches_one().unwrap_or(false)
+    })
 }
 
 /// The unknowns as affine forms in the unknowns that linear equations and random hyperplanes leave:
 /// the coefficients, then the constant. `None` if these equations and hyperplanes have no solution.
-fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<Residue>>> {
+pub(super) fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<Residue>>> {
     let mut rows = Echelon::new(unknowns + 1);
     for terms in equations {
         if terms.iter().all(|(powers, _)| powers.iter().map(|&(_, e)| e).sum::<u32>() <= 1) {
@@ -61,31 +63,41 @@ fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Ve
 }
 
 /// Multiples of equations, reduced by each other.
-struct Macaulay<'a> {
-    monomials: Monomials,
+pub(super) struct Macaulay<'a> {
+    pub(super) monomials: Monomials,
     monitor: &'a Monitor,
-    equations: Vec<Equation>,
+    pub(super) equations: Vec<Equation>,
     /// Rows by their highest monomials, which have the coefficient one and come last.
-    rows: Vec<Option<Vec<Residue>>>,
+    pub(super) rows: Vec<Option<Vec<Residue>>>,
     /// Whether no equation was left out because its degree is too high.
     is_whole: bool,
-    work: u64,
+    /// Products so far, and at most.
+    pub(super) work: u64,
+    limit: u64,
 }
 
-struct Equation {
+/// An equation in the unknowns that are left.
+pub(super) struct Equation {
     /// The coefficients, up to that of the highest monomial.
-    row: Vec<Residue>,
+    pub(super) row: Vec<Residue>,
     degree: usize,
     /// The degree of the multiples that are next.
     next: usize,
 }
 
 impl<'a> Macaulay<'a> {
-    fn new(equations: &[Modular], affine: &[Vec<Residue>], highest: usize, monitor: &'a Monitor) -> Macaulay<'a> {
+    /// The equations in the unknowns that these affine forms leave, for multiples up to a degree.
+    pub(super) fn new(
+        equations: &[Modular],
+        affine: &[Vec<Residue>],
+        highest: usize,
+        limit: u64,
+        monitor: &'a Monitor,
+    ) -> Macaulay<'a> {
         let left = affine.first().map_or(0, |form| form.len() - 1);
         let monomials = Monomials::new(left, highest);
         let rows = vec![None; monomials.exponents.len()];
-        let mut all = Macaulay { monomials, monitor, equations: Vec::new(), rows, is_whole: true, work: 0 };
+        let mut all = Macaulay { monomials, monitor, equations: Vec::new(), rows, is_whole: true, work: 0, limit };
         for terms in equations {
             let degree = |(powers, _): &(Vec<(usize, u32)>, Residue)| powers.iter().map(|&(_, e)| e as usize).sum();
             if terms.iter().map(degree).max().unwrap_or(0) > highest {
@@ -130,38 +142,58 @@ impl<'a> Macaulay<'a> {
 
     /// Whether combinations of multiples are one; `None` where that takes too much work.
     fn reaches_one(mut self) -> Option<bool> {
-        for degree in 0..=self.monomials.counts.len() - 1 {
-            // Multiples of the least degree come first.
-            while let Some(which) = (0..self.equations.len()).min_by_key(|&i| self.equations[i].next) {
-                let of = self.equations[which].next;
-                if of > degree {
-                    break;
-                }
-                self.equations[which].next += 1;
-                let by = of - self.equations[which].degree;
-                let first = if by == 0 { 0 } else { self.monomials.counts[by - 1] };
-                for factor in first..self.monomials.counts[by] {
-                    let Some(row) = self.reduced(self.multiple(which, factor))? else { continue };
-                    let place = row.len() - 1;
-                    if place == 0 {
-                        return Some(true);
-                    }
-                    // A row that falls in degree is an equation of its own, with multiples of lower degree.
-                    let degree = self.degree(place);
-                    if degree < of {
-                        self.equations.push(Equation { row: row.clone(), degree, next: degree + 1 });
-                    }
-                    self.rows[place] = Some(row);
-                }
+        for degree in 0..self.monomials.counts.len() {
+            if self.grow(degree)? {
+                return Some(true);
             }
             // If all monomials of a degree are leading ones, so are all higher ones, but the constant one is not.
-            let first = if degree == 0 { 0 } else { self.monomials.counts[degree - 1] };
-            let full = self.rows[first..self.monomials.counts[degree]].iter().all(Option::is_some);
-            if full && self.is_whole && self.equations.iter().all(|e| e.degree <= degree) {
+            if self.is_full(degree) {
                 return Some(false);
             }
         }
         Some(false)
+    }
+
+    /// Adds multiples up to a degree. Whether combinations of multiples are one; `None` where that takes too much
+    /// work.
+    pub(super) fn grow(&mut self, degree: usize) -> Option<bool> {
+        // Multiples of the least degree come first.
+        while let Some(which) = (0..self.equations.len()).min_by_key(|&i| self.equations[i].next) {
+            let of = self.equations[which].next;
+            if of > degree {
+                break;
+            }
+            self.equations[which].next += 1;
+            let by = of - self.equations[which].degree;
+            let first = if by == 0 { 0 } else { self.monomials.counts[by - 1] };
+            for factor in first..self.monomials.counts[by] {
+                let Some(row) = self.reduced(self.multiple(which, factor))? else { continue };
+                let place = row.len() - 1;
+                if place == 0 {
+                    return Some(true);
+                }
+                // A row that falls in degree is an equation of its own, with multiples of lower degree.
+                let degree = self.degree(place);
+                if degree < of {
+                    self.equations.push(Equation { row: row.clone(), degree, next: degree + 1 });
+                }
+                self.rows[place] = Some(row);
+            }
+        }
+        Some(false)
+    }
+
+    /// Whether all monomials of a degree are leading ones, and no equation has a higher degree.
+    pub(super) fn is_full(&self, degree: usize) -> bool {
+        let first = if degree == 0 { 0 } else { self.monomials.counts[degree - 1] };
+        let full = self.rows[first..self.monomials.counts[degree]].iter().all(Option::is_some);
+        full && self.is_whole && self.equations.iter().all(|e| e.degree <= degree)
+    }
+
+    /// Counts so many products; `None` where that is too much work.
+    pub(super) fn spend(&mut self, products: usize) -> Option<()> {
+        self.work = self.work.saturating_add(products as u64);
+        (self.work <= self.limit && !self.monitor.is_cancelled()).then_some(())
     }
 
     /// An equation times a monomial.
@@ -188,7 +220,7 @@ impl<'a> Macaulay<'a> {
                 row.iter_mut().for_each(|c| *c *= factor);
                 return Some(Some(row));
             };
-            if self.work > WORK || self.monitor.is_cancelled() {
+            if self.work > self.limit || self.monitor.is_cancelled() {
                 return None;
             }
             row.iter_mut().zip(known).for_each(|(c, &k)| *c -= leading * k);

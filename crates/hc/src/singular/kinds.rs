@@ -22,16 +22,30 @@ pub(crate) enum LocalStructure {
         point: Vec<Complex64>,
         /// The largest value of an equation there, relative to the sizes of its terms.
         residual: f64,
+        /// Whether the solution and its multiplicity were found by exact arithmetic.
+        is_exact: bool,
     },
     /// A point on a set of solutions of positive dimension.
     OnComponent {
         /// A solution on it near the end.
         point: Vec<Complex64>,
+        /// Whether that was found by exact arithmetic.
+        is_exact: bool,
     },
     /// The given equations have no solution nearby.
     NotASolution,
     /// It is not known which of these the point is.
     Unresolved(UnresolvedReason),
+}
+
+impl LocalStructure {
+    /// Whether digits alone say that the Jacobian does not have full rank.
+    pub(crate) fn is_singular_by_digits(&self) -> bool {
+        matches!(
+            self,
+            LocalStructure::Isolated { is_exact: false, .. } | LocalStructure::OnComponent { is_exact: false, .. }
+        )
+    }
 }
 
 /// How much is done to find the local structure.
@@ -52,6 +66,9 @@ pub(crate) enum UnresolvedReason {
     /// Numbers that are neither zero nor clearly different from zero.
     #[error("ranks are not clear to 300 digits")]
     Unclear,
+    /// All solutions were counted exactly, and their multiplicities are others.
+    #[error("the solutions, counted exactly, have other multiplicities")]
+    Count,
     /// The work that a solve may take for its ends is done.
     #[error("work limit reached; this end was not examined")]
     TooMuch,

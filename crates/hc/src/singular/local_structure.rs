@@ -6,7 +6,8 @@ use super::dual::{Count, count};
 use super::eliminate::{Elimination, PivotLimit};
 use super::equations::{ExactEquations, LocalEquations, Precision};
 use super::kinds::{Effort, LocalStructure, UnresolvedReason, residual};
-use super::number::Number;
+use super::many_digits::{Consistency, consistency};
+use super::number::{Number, largest};
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
@@ -42,6 +43,26 @@ pub(crate) fn local_structure(
     if is_no_solution(given, point, error) {
         return LocalStructure::NotASolution;
     }
+    let found = structure_by_digits(given, point, paths, most, error, effort);
+    match &found {
+        LocalStructure::Regular { point, .. } if given.len() > given.unknowns() => match consistency(given, point) {
+            Consistency::Solves => found,
+            Consistency::Misses => LocalStructure::NotASolution,
+            Consistency::Unclear => LocalStructure::Unresolved(UnresolvedReason::Unclear),
+        },
+        _ => found,
+    }
+}
+
+/// [`local_structure`] at a point near which equations nearly vanish, in as many digits as show it.
+fn structure_by_digits(
+    given: &ExactEquations,
+    point: &[Complex64],
+    paths: usize,
+    most: usize,
+    error: f64,
+    effort: Effort,
+) -> LocalStructure {
     let rational = LazyCell::new(|| at_rational(given, point, error, most));
     let is_on_component = |found: &LocalStructure| matches!(found, LocalStructure::OnComponent { .. });
     // In this order, as far as one tells something. A rational point on a component counts only where more
@@ -98,15 +119,6 @@ fn is_no_solution(given: &ExactEquations, point: &[Complex64], error: f64) -> bo
     let local =
         given.near_within::<ComplexDd>(point, (1e3 * error).clamp(structure::SURELY_ZERO, structure::NEAR_SINGULAR));
     local.residual(&local.scaled(point)).exp2() > structure::NOT_ZERO.max(1e3 * degree * error).min(0.5)
-}
-
-/// Whether a regular solution of combinations of the equations, to all digits of a double, solves
-/// them all.
-pub(crate) fn solves(given: &ExactEquations, point: &[Complex64]) -> bool {
-    let residual = residual(given, point);
-    residual <= structure::SOLVES
-        || residual < structure::MISSES
-            && matches!(local_structure(given, point, 1, 1, 0.0, Effort::Little), LocalStructure::Regular { .. })
 }
 
 /// Whether the given equations move a regular solution of rounded ones by more than its own
@@ -191,7 +203,7 @@ fn sheet_in<S: Precision>(
 ) -> Option<LocalStructure> {
     let local = given.near::<S>(point);
     let point = on_sheet(&local, &local.scaled(point), paths, near)?;
-    Some(LocalStructure::OnComponent { point: rounded(given, &local, &point).0 })
+    Some(LocalStructure::OnComponent { point: rounded(given, &local, &point).0, is_exact: false })
 }
 
 /// Logarithms of the tolerances at which ranks are read off, from what is clear in this precision on.
@@ -237,8 +249,10 @@ fn multiple<S: Precision>(
                 Ok(multiplicity) => {
                     let (point, residual) = rounded(given, &local, &found.point);
                     return Ok(match multiplicity {
-                        Some(multiplicity) => LocalStructure::Isolated { multiplicity, point, residual },
-                        None => LocalStructure::OnComponent { point },
+                        Some(multiplicity) => {
+                            LocalStructure::Isolated { multiplicity, point, residual, is_exact: false }
+                        }
+                        None => LocalStructure::OnComponent { point, is_exact: false },
                     });
                 }
                 Err(UnresolvedReason::Unclear) if why == UnresolvedReason::TooLarge => {}
@@ -269,7 +283,7 @@ fn on_axes(given: &ExactEquations, point: &[Complex64], error: f64) -> Option<Lo
         return None;
     }
     let kept = point.iter().zip(&zero).map(|(z, &zero)| if zero { Complex64::default() } else { *z });
-    Some(LocalStructure::OnComponent { point: kept.collect() })
+    Some(LocalStructure::OnComponent { point: kept.collect(), is_exact: true })
 }
 
 /// The local structure if zeros in place of small coordinates give an exact solution, which needs no
@@ -289,7 +303,7 @@ fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize)
         let reduced = Reduced::new(local, &snapped, &pivots, order)?;
         if let Count::All(multiplicity) = count(&reduced.basis, &reduced.equations, 4 * limit) {
             let point = local.unscaled(&snapped).iter().map(Number::to_c64).collect();
-            return Some(LocalStructure::Isolated { multiplicity, point, residual: 0.0 });
+            return Some(LocalStructure::Isolated { multiplicity, point, residual: 0.0, is_exact: false });
         }
     }
     None
@@ -340,7 +354,11 @@ pub(super) fn rounded<S: Number>(
     local: &LocalEquations<'_, S>,
     point: &[S],
 ) -> (Vec<Complex64>, f64) {
-    let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
+    // Imaginary parts that are rounding errors of many digits are zero.
+    let is_real =
+        largest(&point.iter().map(|z| S::sub(z, &z.conjugate())).collect::<Vec<_>>()) < structure::ZERO * S::BITS;
+    let real = |z: Complex64| if is_real { Complex64::from(z.re) } else { z };
+    let point: Vec<Complex64> = local.unscaled(point).iter().map(|z| real(z.to_c64())).collect();
     let residual = residual(given, &point);
     (point, residual)
 }

@@ -19,7 +19,7 @@ fn structure(text: &str, point: &[f64], paths: usize, error: f64) -> LocalStruct
 
 fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {
     match structure(text, at, paths, error) {
-        LocalStructure::Isolated { multiplicity, point, residual } => {
+        LocalStructure::Isolated { multiplicity, point, residual, .. } => {
             for (z, x) in point.iter().zip(at) {
                 assert!((z - x).norm() < 1e-14, "{text}: {point:?}");
             }

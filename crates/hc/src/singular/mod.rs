@@ -4,6 +4,7 @@
 //! It is found from the given equations, with their exact coefficients, in numbers of 32 to 308
 //! digits. The precision is the lowest in which zeros are clearly separated from other numbers.
 
+mod census;
 mod cluster;
 mod deflate;
 mod dual;
@@ -12,19 +13,23 @@ mod empty;
 mod equations;
 mod kinds;
 mod local_structure;
+mod many_digits;
 mod modular;
 mod monomials;
 mod multiplicity;
 mod number;
+mod quotient;
 mod rational;
 mod series;
 mod sheet;
 
+pub(crate) use census::{Census, census};
 pub(crate) use cluster::ClusterEquations;
 pub(crate) use eliminate::{Elimination, PivotLimit};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::ExactEquations;
 pub(crate) use kinds::{Effort, LocalStructure, UnresolvedReason, residual};
-pub(crate) use local_structure::{is_moved, local_structure, on_set_nearby, solves};
+pub(crate) use local_structure::{is_moved, local_structure, on_set_nearby};
+pub(crate) use many_digits::{Consistency, consistency, is_real};
 pub(crate) use modular::{PRIME, Residue, is_squarefree, resultant, trimmed};
 pub(crate) use number::Number;

@@ -141,8 +141,32 @@ pub(crate) fn resultant(a: Vec<Residue>, b: Vec<Residue>) -> Residue {
 /// Whether a polynomial, its coefficients by ascending exponents and the last not zero, has no
 /// multiple roots.
 pub(crate) fn is_squarefree(whole: Vec<Residue>) -> bool {
-    let slope = whole.iter().zip(0u32..).skip(1).map(|(&c, e)| c * e.into()).collect();
+    let slope = slope(&whole);
     euclid(whole, slope).0.len() == 1
+}
+
+/// The derivative of a polynomial by ascending powers.
+pub(super) fn slope(whole: &[Residue]) -> Vec<Residue> {
+    whole.iter().zip(0u32..).skip(1).map(|(&c, e)| c * e.into()).collect()
+}
+
+/// A greatest common divisor of two polynomials by ascending powers, not both zero.
+pub(super) fn divisor(a: Vec<Residue>, b: Vec<Residue>) -> Vec<Residue> {
+    euclid(trimmed(a), b).0
+}
+
+/// The quotient of two polynomials by ascending powers, the second of which divides the first.
+pub(super) fn divided(a: &[Residue], by: &[Residue]) -> Vec<Residue> {
+    let (mut rest, mut quotient) = (trimmed(a.to_vec()), Vec::new());
+    let Some(inverse) = by.last().map(|leading| leading.inverse()) else { return quotient };
+    while rest.len() >= by.len() {
+        let (place, Some(last)) = (rest.len() - by.len(), rest.pop()) else { break };
+        let factor = last * inverse;
+        rest[place..].iter_mut().zip(by).for_each(|(r, &c)| *r -= factor * c);
+        quotient.push(factor);
+    }
+    quotient.reverse();
+    quotient
 }
 
 /// A greatest common divisor, which is not zero, and the resultant, by Euclid's algorithm.

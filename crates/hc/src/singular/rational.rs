@@ -72,8 +72,8 @@ fn within(
     let residual = residual(given, &point);
     Some(match multiplicity {
         Count::All(1) => Some(LocalStructure::Regular { point, residual }),
-        Count::All(multiplicity) => Some(LocalStructure::Isolated { multiplicity, point, residual }),
-        Count::More => Some(LocalStructure::OnComponent { point }),
+        Count::All(multiplicity) => Some(LocalStructure::Isolated { multiplicity, point, residual, is_exact: true }),
+        Count::More => Some(LocalStructure::OnComponent { point, is_exact: true }),
         Count::Unfinished | Count::Unclear => None,
     })
 }

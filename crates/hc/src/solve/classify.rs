@@ -3,18 +3,31 @@
 use super::ends::{End, Ends};
 use super::excess::Excess;
 use super::infinity::Line;
-use super::solutions::{Solution, Solutions};
+use super::solutions::{Solution, Solutions, is_real_in_doubt};
 use crate::distinct::coincidences;
+use crate::endgame::SingularEnd;
 use crate::exact::{Digits, SmallSystem};
 use crate::monitor::Monitor;
 use crate::refine::{Refined, Refiner};
-use crate::singular::{self, ExactEquations};
+use crate::singular::{self, Census, Consistency, ExactEquations, census};
 use crate::start::PathSystem;
+use crate::threads::IntoParallelRefIterator;
+#[cfg(feature = "threads")]
+use crate::threads::ParallelIterator;
+use crate::tolerances;
 use num_complex::Complex64;
+use num_rational::BigRational;
+use num_traits::{ToPrimitive, Zero};
 use poly::{Exact, Polynomial};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
+
+/// Coefficients with more bits than this are no doubles, and no decimals of sixteen digits.
+const LONG: u64 = 60;
+/// The logarithm to base 2 of about how large the product of the ratios of coefficients of each equation may be, so that
+/// solutions are surely no larger than where paths to infinity are followed, which is 1e60.
+const FAR: f64 = 100.0;
 
 /// The given equations as polynomials, by which ends are judged.
 pub(super) struct Expanded<'a> {
@@ -22,8 +35,12 @@ pub(super) struct Expanded<'a> {
     pub(super) given: ExactEquations,
     /// Whether the coefficients that are tracked are exactly those that were given.
     pub(super) exact: bool,
+    /// Whether all coefficients are real.
+    is_real: bool,
     /// The equations in one unknown or two, once they are asked for.
     small: OnceLock<Option<SmallSystem>>,
+    /// The numbers of all solutions, once they are asked for.
+    census: OnceLock<Option<Census>>,
 }
 
 impl<'a> Expanded<'a> {
@@ -36,12 +53,48 @@ impl<'a> Expanded<'a> {
     ) -> Expanded<'a> {
         let polynomials = polynomials.into();
         let given = ExactEquations::new(&polynomials, units).stopped_by(monitor);
-        Expanded { polynomials, given, exact, small: OnceLock::new() }
+        let is_real = polynomials.iter().flat_map(|p| p.terms()).all(|(_, c)| c.im.is_zero());
+        Expanded { polynomials, given, exact, is_real, small: OnceLock::new(), census: OnceLock::new() }
     }
 
     /// The equations, if they come down to one unknown or two.
     pub(super) fn small(&self) -> Option<&SmallSystem> {
         self.small.get_or_init(|| SmallSystem::new(&self.polynomials)).as_ref()
+    }
+
+    /// Whether coefficients are so different in size, or so long, that solutions may lie beyond where paths to infinity
+    /// are followed.
+    pub(super) fn may_have_far_solutions(&self) -> bool {
+        let bits = |q: &BigRational| q.numer().bits().max(q.denom().bits());
+        let mut coefficients = self.polynomials.iter().flat_map(|p| p.terms()).map(|(_, c)| c);
+        if coefficients.any(|c| bits(&c.re).max(bits(&c.im)) > LONG) {
+            return true;
+        }
+        let span = |p: &Polynomial<Exact>| {
+            let sizes = p.terms().iter().filter_map(|(_, c)| Some(c.re.to_f64()?.hypot(c.im.to_f64()?).log2()));
+            let (low, high) = sizes.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.min(a), s.max(b)));
+            (high - low).max(0.0)
+        };
+        self.polynomials.iter().map(span).sum::<f64>() > FAR
+    }
+
+    /// Where paths end that do not end at solutions, if there are no components: at infinity, or at points that solve only
+    /// combinations of more equations than unknowns.
+    pub(super) fn elsewhere(&self) -> End {
+        if self.given.len() > self.given.unknowns() { End::EXCESS } else { End::INFINITE }
+    }
+
+    /// How many solutions there are of each multiplicity, if they have been counted.
+    pub(super) fn counted(&self) -> Option<&Census> {
+        self.census.get()?.as_ref()
+    }
+
+    /// How many solutions there are of each multiplicity, with zero coordinates too, if these are finitely many and
+    /// `work` products modulo a prime tell.
+    fn census(&self, work: u64, monitor: &Monitor) -> Option<&Census> {
+        let negative = |p: &Polynomial<Exact>| p.terms().iter().any(|(m, _)| m.exponents().iter().any(|&e| e < 0));
+        let count = || if self.polynomials.iter().any(negative) { None } else { census(&self.given, work, monitor) };
+        self.census.get_or_init(count).as_ref()
     }
 }
 
@@ -50,6 +103,9 @@ pub(super) struct Tracked<'a> {
     pub(super) expanded: &'a Expanded<'a>,
     /// The work that may be done for the ends.
     pub(super) work: u64,
+    /// Products modulo a prime that may be done to count all solutions; none where it does not matter, or the number
+    /// of solutions is not that of those that were asked for.
+    pub(super) census_work: u64,
     /// As many equations as unknowns, with their parameters.
     pub(super) system: &'a PathSystem,
     pub(super) target: &'a [Complex64],
@@ -61,6 +117,11 @@ pub(super) struct Tracked<'a> {
 }
 
 impl Tracked<'_> {
+    /// How many solutions there are of each multiplicity, as far as that is known.
+    pub(super) fn census(&self) -> Option<&Census> {
+        if self.census_work == 0 { None } else { self.expanded.census(self.census_work, self.monitor) }
+    }
+
     /// All solutions without paths, regular ones first, if the equations come down to one unknown or two.
     pub(super) fn solutions(&self) -> Option<Vec<Solution>> {
         let mut refiner = Refiner::new(self.system);
@@ -88,13 +149,18 @@ impl Ends {
         let regular = std::mem::take(&mut self.regular);
         let groups = coincidences(regular.iter().map(|(&path, r)| (path, &r.point[..])), coincidence);
         let repeated: BTreeSet<usize> = groups.iter().flat_map(|group| &group[1..]).copied().collect();
-        let mut solutions = Vec::new();
-        for (path, refined) in regular.into_iter().filter(|(path, _)| !repeated.contains(path)) {
-            if excess.contains_regular(&refined.point) {
-                self.set(path, End::EXCESS);
-            } else {
-                let Refined { point, residual, condition, .. } = refined;
-                solutions.push((path, Solution::new(point, 1, 1, false, residual, condition)));
+        let (mut solutions, mut unclear) = (Vec::new(), Vec::new());
+        let ends: Vec<(usize, Refined)> = regular.into_iter().filter(|(path, _)| !repeated.contains(path)).collect();
+        let asked: Vec<Consistency> = ends.par_iter().map(|(_, end)| excess.of_regular(&end.point)).collect();
+        for ((path, end), asked) in ends.into_iter().zip(asked) {
+            let Refined { point, residual, condition, .. } = end;
+            match asked {
+                Consistency::Misses => self.set(path, End::EXCESS),
+                Consistency::Solves => solutions.push((path, Solution::new(point, 1, 1, false, residual, condition))),
+                Consistency::Unclear => {
+                    self.set(path, End::SINGULAR);
+                    unclear.push((path, SingularEnd { point, winding: 1, error: tolerances::ends::ROUNDED }));
+                }
             }
         }
         let Some(tracked) = tracked else {
@@ -107,8 +173,23 @@ impl Ends {
                 self.reassign(line.impossible(&self.directions[k]), End::infinite(k), End::LOST);
             }
         }
-        let doubtful = self.correct_rounded(solutions, tracked);
-        self.add_singular(tracked, doubtful, excess);
+        unclear.extend(self.correct_rounded(solutions, tracked));
+        self.add_singular(tracked, unclear, excess);
+        self
+    }
+
+    /// Decides by many digits which regular solutions are real, where their imaginary parts are neither rounding errors
+    /// nor clearly not zero.
+    pub(super) fn decide_real(mut self, expanded: &Expanded<'_>) -> Ends {
+        let decided: Vec<Option<bool>> = (self.solutions.par_iter())
+            .map(|s| {
+                let in_doubt = !s.singular && is_real_in_doubt(&s.value, s.condition, expanded.is_real);
+                in_doubt.then(|| singular::is_real(&expanded.given, &s.value)).flatten()
+            })
+            .collect();
+        for (solution, is_real) in self.solutions.iter_mut().zip(decided) {
+            solution.is_real = is_real.unwrap_or(solution.is_real);
+        }
         self
     }
 }

@@ -60,6 +60,8 @@ pub(super) struct Ends {
     pub(super) component_points: Vec<Vec<Complex64>>,
     /// Ends whose nature is not known. Their paths are lost.
     pub(super) unresolved: Vec<Unresolved>,
+    /// Whether it was digits alone that showed some end to be singular.
+    pub(super) by_digits: bool,
     /// Paths to such ends for which no work was left.
     pub(super) unexamined: usize,
     /// How often a path was tracked again.

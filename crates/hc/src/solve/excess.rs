@@ -1,6 +1,6 @@
 //! Solutions that were not requested.
 
-use crate::singular::{self, ExactEquations};
+use crate::singular::{Consistency, ExactEquations, consistency};
 use crate::tolerances::ends;
 use num_complex::Complex64;
 
@@ -38,10 +38,12 @@ impl<'a> Excess<'a> {
         self.stray.is_some_and(|stray| stray(point))
     }
 
-    /// Whether a regular end was not requested: it does not solve all equations, or lies outside
-    /// the torus.
-    pub(super) fn contains_regular(&self, point: &[Complex64]) -> bool {
-        self.outside(point) || self.all.is_some_and(|given| !singular::solves(given, point))
+    /// Whether a regular end was requested: it solves all equations, and does not lie outside the torus.
+    pub(super) fn of_regular(&self, point: &[Complex64]) -> Consistency {
+        if self.outside(point) {
+            return Consistency::Misses;
+        }
+        self.all.map_or(Consistency::Solves, |given| consistency(given, point))
     }
 
     /// Whether a point has a zero coordinate although only the torus was requested.

@@ -112,7 +112,8 @@ impl<'a> Formulas<'a> {
         for solution in &mut found.solutions {
             cut(&mut solution.value);
             let tolerance = if solution.multiplicity > 1 { ends::REAL_SINGULAR } else { ends::REAL };
-            solution.is_real = is_real(&solution.value, tolerance);
+            // Sums may be so large that imaginary parts beside them seem to be zero.
+            solution.is_real &= is_real(&solution.value, tolerance);
         }
         found.component_points.iter_mut().for_each(cut);
         found.unresolved.iter_mut().for_each(|end| cut(&mut end.value));

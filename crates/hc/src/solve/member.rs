@@ -7,11 +7,11 @@ use super::options::SolveOptions;
 use super::paths::{Route, follow};
 use super::polynomials::solve_cluster;
 use super::singular_ends::work;
-use super::solutions::{Member, Solutions};
+use super::solutions::{Member, Solutions, is_real_in_doubt};
 use crate::family::{Fibre, Limit};
 use crate::monitor::Monitor;
 use crate::moving::MovingTrackers;
-use crate::refine::LaneRefiners;
+use crate::refine::{LaneRefiners, Refined};
 use crate::singular::ExactEquations;
 use crate::start::PathSystem;
 use crate::tracker::Trackers;
@@ -36,12 +36,16 @@ pub(crate) fn solve_member<'e, E: Evaluate>(
 ) -> Solutions {
     let excess = &Excess::with_stray(stray);
     let ends = followed((trackers, refiners, moving), fibre, target, excess, options, monitor);
-    let expanded = if !ends.singular.is_empty() { expanded(systems, target, monitor) } else { None };
+    let real_coefficients = systems[0].is_real() && target.iter().all(|p| p.im == 0.0);
+    let in_doubt = |end: &Refined| is_real_in_doubt(&end.point, end.condition, real_coefficients);
+    let asks = !ends.singular.is_empty() || ends.regular.values().any(in_doubt);
+    let expanded = if asks { expanded(systems, target, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
     let tracked = expanded.as_ref().map(|(expanded, system, target)| Tracked {
         expanded,
         work: work(&expanded.given, fibre.len()),
+        census_work: 0,
         system,
         target,
         line: None,
@@ -50,6 +54,9 @@ pub(crate) fn solve_member<'e, E: Evaluate>(
     });
     let (retracked, bounded) = (ends.retracked, ends.bounded);
     let mut ends = ends.judged(tracked.as_ref(), excess, options.paths.coincidence);
+    if let Some(tracked) = &tracked {
+        ends = ends.decide_real(tracked.expanded);
+    }
     let lost = ends.lost() > 0;
     let limited = (bounded && lost).then_some(Limit::Again);
     Solutions { start_systems: 1, interrupted: monitor.is_cancelled() && lost, limited, ..ends.solutions(retracked) }

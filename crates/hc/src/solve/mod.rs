@@ -3,6 +3,7 @@
 mod classify;
 mod cluster;
 mod conditioned;
+mod counted;
 mod ends;
 mod equations;
 mod error;

@@ -15,6 +15,7 @@ use crate::moving::{MovingParts, MovingTrackers};
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::{LaneRefiners, Refined};
 use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
+use crate::singular::Consistency;
 use crate::start::Source;
 use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
@@ -248,7 +249,8 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let Some(known) = self.route.options.known.filter(|&known| self.ends.regular.len() >= known) else {
             return false;
         };
-        let asked = self.ends.regular.iter().filter(|(_, end)| !self.route.excess.contains_regular(&end.point));
+        let is_asked = |point: &[Complex64]| self.route.excess.of_regular(point) == Consistency::Solves;
+        let asked = self.ends.regular.iter().filter(|(_, end)| is_asked(&end.point));
         let points: Vec<(usize, &[Complex64])> = asked.map(|(&k, end)| (k, &end.point[..])).collect();
         let groups = coincidences(points.iter().copied(), self.route.options.paths.coincidence);
         points.len() - groups.iter().map(|group| group.len() - 1).sum::<usize>() >= known

@@ -3,6 +3,7 @@
 
 use super::classify::{ClusterSolver, Expanded, Tracked};
 use super::conditioned::conditioned;
+use super::counted::census_work;
 use super::ends::{End, Ends};
 use super::equations::ScaledEquations;
 use super::error::SolveError;
@@ -263,6 +264,11 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
             // Other paths would come to the ends for which no work is left.
             let needless = found.lost() <= found.unexamined;
             attempts.join(from.kind, found);
+            if let Some(expanded) = &problem.expanded
+                && let Some(census) = expanded.counted()
+            {
+                attempts.best.accept(census, expanded.elsewhere());
+            }
             let last = attempts.start_systems > options.restarts || hopeless || needless;
             if attempts.best.lost() == 0 || last || monitor.is_cancelled() {
                 break;
@@ -282,6 +288,8 @@ impl Problem<'_> {
         let Some(expanded) = &self.expanded else { return ends.judged(None, excess, coincidence) };
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
         let work = singular_ends::work(&expanded.given, from.paths).min(outer.map_or(u64::MAX, ExactEquations::left));
+        let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
+        let census_work = if all && level == 0 { census_work(&expanded.given, from.paths) } else { 0 };
         let (system, target) = match &self.slack {
             Some(slack) => {
                 slack.shorten(&mut ends);
@@ -295,6 +303,7 @@ impl Problem<'_> {
         let tracked = Tracked {
             expanded,
             work,
+            census_work,
             system,
             target,
             line: Some(line),
@@ -307,15 +316,14 @@ impl Problem<'_> {
             && !monitor.is_cancelled()
             && let Some(solutions) = tracked.solutions()
         {
-            return ends.with_all(solutions);
+            return ends.with_all(solutions).decide_real(expanded);
         }
         let mut ends = ends.judged(Some(&tracked), excess, coincidence);
         if self.roots.is_some() {
             // All paths end at roots, those that seem to go to infinity too.
             (0..ends.directions.len()).for_each(|k| ends.reassign(ends.paths, End::infinite(k), End::LOST));
         }
-        let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
-        if all { ends.checked(&tracked) } else { ends }
+        if all { ends.checked(&tracked) } else { ends }.decide_real(expanded)
     }
 }
 

@@ -30,10 +30,12 @@ impl Ends {
         let groups = groups(points, same::SINGULAR);
         let spare = self.lost();
         let structures = structures_of_ends(tracked, &ends, &groups, &self.solutions, spare);
-        let doubted = structures
-            .iter()
-            .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
-        let simple = doubted && tracked.expanded.small().is_some_and(SmallSystem::are_simple);
+        self.by_digits = structures.iter().any(|(_, structure)| structure.is_singular_by_digits());
+        let are_simple = || {
+            let by_count = tracked.census().is_some_and(|census| census.keys().all(|&multiplicity| multiplicity == 1));
+            by_count || tracked.expanded.small().is_some_and(SmallSystem::are_simple)
+        };
+        let simple = self.by_digits && are_simple();
         // Multiple solutions, with the paths that end there, and the number of lost paths that end at others.
         let mut multiple: Vec<(Solution, Vec<usize>)> = Vec::new();
         let mut further = 0;
@@ -47,7 +49,7 @@ impl Ends {
                 {
                     self.assign(&paths, End::EXCESS);
                 }
-                LocalStructure::Isolated { multiplicity, point, residual } => {
+                LocalStructure::Isolated { multiplicity, point, residual, .. } => {
                     self.assign(&paths, End::SOLUTION);
                     let winding = group.iter().map(|&k| ends[k].1.winding).max().unwrap_or(1);
                     match multiple.iter_mut().find(|(m, _)| relative_distance(&m.value, &point) <= ends::ONE_POINT) {
@@ -133,38 +135,6 @@ impl Ends {
         } else {
             self.missing = missing;
         }
-    }
-
-    /// Adds what other methods tell, if some paths are lost or some ends are singular.
-    pub(super) fn checked(mut self, tracked: &Tracked<'_>) -> Ends {
-        let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
-        let singular = !self.component_points.is_empty() || self.solutions.iter().any(|s| s.singular);
-        // Paths may seem to go to infinity that do not.
-        if self.lost() == 0 && !singular && self.infinite() == 0 {
-            return self;
-        }
-        if let Some(all) = tracked.expanded.small().and_then(SmallSystem::count) {
-            if self.lost() == 0 && !singular && all == found {
-                return self;
-            }
-            // There are no components. Paths that are not accounted for go to infinity, however they seem to
-            // end, or solutions are missing.
-            self.component_points.clear();
-            self.reassign(self.paths, End::COMPONENT, End::LOST);
-            self.missing = all.abs_diff(found);
-            if self.missing == 0 {
-                self.reassign(self.paths, End::LOST, End::SOLUTION);
-            }
-        }
-        if self.lost() > 0
-            && let Some(solutions) = tracked.solutions()
-        {
-            return self.with_all(solutions);
-        }
-        if self.lost() == 0 {
-            self.unresolved.clear();
-        }
-        self
     }
 
     fn unresolved(&mut self, end: &[Complex64], paths: &[usize], why: UnresolvedReason) {

@@ -24,8 +24,9 @@ pub struct Solution {
     pub winding_number: usize,
     /// Whether the Jacobian is singular here, to working precision.
     pub singular: bool,
-    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one), or below
-    /// 1e-7 if the solution is singular.
+    /// Whether the solution is real. Imaginary parts that are neither rounding errors nor clearly not zero are looked at
+    /// with three hundred digits, by the exact coefficients; where these do not tell, parts below 1e-10 of the largest
+    /// coordinate (or of one) count as zero.
     pub is_real: bool,
     /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates. If
     /// the Jacobian is singular, relative to the sizes of the terms of the equation.
@@ -49,6 +50,14 @@ impl Solution {
         let is_real = is_real(&value, if singular { ends::REAL_SINGULAR } else { ends::REAL });
         Solution { value, multiplicity, winding_number, singular, is_real, residual, condition, certified: None }
     }
+}
+
+/// Whether the digits of a regular solution do not tell if it is real. With real coefficients the conjugate is a
+/// solution too, which is another one only if both are far apart or ill-conditioned.
+pub(super) fn is_real_in_doubt(value: &[Complex64], condition: f64, real_coefficients: bool) -> bool {
+    let is_rounded = condition < ends::EXACT_CONDITION && is_real(value, ends::SURELY_REAL);
+    let is_plain = real_coefficients && (is_rounded || value.iter().all(|z| z.im == 0.0));
+    !is_plain && is_real(value, ends::SURELY_IMAGINARY)
 }
 
 /// A direction in which paths go to infinity.

@@ -209,6 +209,14 @@ pub(crate) mod endgame {
     pub(crate) const STRAIGHT_AFTER: u32 = 2;
     /// Share of a leg to zero that may be left before it is given up.
     pub(crate) const LEFT_OF_LEG: f64 = 1e-7;
+    /// Paths to infinity are followed until coordinates have about this size: products of five are numbers still.
+    pub(crate) const FAR: f64 = 1e60;
+    /// Leading terms of an equation cancel on a path to infinity if this share of them is left at most.
+    pub(crate) const CANCELS: f64 = 0.1;
+    /// Up to there the logarithms of their sizes grow as the first clear loop says, up to this share.
+    pub(crate) const GROWN: f64 = 0.05;
+    /// Circles of a smaller radius than this are not looked at.
+    pub(crate) const LEAST_RADIUS: f64 = 1e-290;
     /// Each circle is at least this many times smaller than the one before.
     pub(crate) const LEAST_SHRINK: f64 = 1.5;
 }
@@ -226,9 +234,13 @@ pub(crate) mod same {
 pub(crate) mod ends {
     /// Imaginary parts of regular solutions up to this share of the point count as zero.
     pub(crate) const REAL: f64 = 1e-10;
-    /// Imaginary parts of singular solutions up to this share of the point count as zero: they are
-    /// known to fewer digits.
-    pub(crate) const REAL_SINGULAR: f64 = 1e-7;
+    /// Imaginary parts of multiple solutions up to this share of the point count as zero: these are known to all digits.
+    pub(crate) const REAL_SINGULAR: f64 = 1e-14;
+    /// Imaginary parts of regular solutions above this share of the point are surely not zero.
+    pub(crate) const SURELY_IMAGINARY: f64 = 1e-6;
+    /// Imaginary parts up to this share of the point are rounding errors, if the coefficients are real and the condition
+    /// is good: the conjugate is the same solution.
+    pub(crate) const SURELY_REAL: f64 = 1e-13;
     /// Components smaller than this share of the largest are compared on its scale.
     pub(crate) const FLOOR: f64 = 1e-4;
     /// Coordinates up to this share of the largest count as zero where solutions with zero

@@ -59,11 +59,11 @@ pub(crate) mod structure {
     pub(crate) const NOT_ZERO: f64 = 1e-4;
     /// Coordinates below this share of the largest may really be zero, whatever their stated error.
     pub(crate) const SURELY_ZERO: f64 = 1e-5;
-    /// Relative values of equations up to which a regular solution of combinations of them surely
-    /// solves all.
-    pub(crate) const SOLVES: f64 = 1e-13;
-    /// Relative values of equations from which on it does not; between the two it is refined.
+    /// Relative values of equations from which on a regular solution of combinations of them, to all digits of a
+    /// double, does not solve them all. Below, it is refined.
     pub(crate) const MISSES: f64 = 1e-6;
+    /// Binary digits that rounding may take from values of equations at a refined point.
+    pub(crate) const ROUNDED_VALUES: f64 = 24.0;
     /// Relative corrections up to this size are due to rounding the point.
     pub(crate) const STEADY: f64 = 1e-13;
     /// Logarithm of pivots of the Jacobian that may be due to rounding the point as well.

@@ -8,8 +8,10 @@ pub(crate) struct Case {
     pub(crate) text: String,
     /// The isolated solutions, and their multiplicities.
     pub(crate) solutions: Vec<(Vec<Complex64>, usize)>,
-    /// How many simple solutions there are besides, at points that are not known.
-    pub(crate) others: usize,
+    /// The multiplicities of the solutions besides, at points that are not known, in ascending order.
+    pub(crate) others: Vec<usize>,
+    /// How many solutions are real, where that is known.
+    pub(crate) real: Option<usize>,
     /// Whether there is a component of positive dimension besides.
     pub(crate) component: bool,
 }
@@ -18,7 +20,7 @@ impl Case {
     /// Square equations in as many unknowns, without solutions as yet.
     pub(super) fn new(equations: &[String]) -> Case {
         let text = format!("{}\n{};", equations.len(), equations.join(";\n"));
-        Case { text, solutions: Vec::new(), others: 0, component: false }
+        Case { text, solutions: Vec::new(), others: Vec::new(), real: None, component: false }
     }
 
     /// With more equations than unknowns.
@@ -44,9 +46,14 @@ impl Case {
         points.iter().fold(self, |case, point| case.with(point, 1))
     }
 
-    /// With as many simple solutions besides, at points that are not known.
-    pub(super) fn with_others(self, others: usize) -> Case {
-        Case { others, ..self }
+    /// With solutions of these multiplicities besides, at points that are not known.
+    pub(super) fn with_others(self, others: &[usize]) -> Case {
+        Case { others: others.to_vec(), ..self }
+    }
+
+    /// With so many real solutions.
+    pub(super) fn with_real(self, real: usize) -> Case {
+        Case { real: Some(real), ..self }
     }
 
     /// With a component.

@@ -37,7 +37,7 @@ impl Mignotte {
 /// `n` simple roots.
 pub(super) fn mignotte(draw: &mut Draw) -> Case {
     let f = Mignotte::draw(draw);
-    Case::new(&[f.text("x")]).with_simple(&f.close().map(|x| vec![x])).with_others(f.n - 2)
+    Case::new(&[f.text("x")]).with_simple(&f.close().map(|x| vec![x])).with_others(&vec![1; f.n - 2])
 }
 
 /// In `x` beside a parabola, or in `x + y` beside a line that this is a coordinate of.
@@ -51,7 +51,7 @@ pub(super) fn mignotte_beside_a_curve(draw: &mut Draw) -> Case {
         let point = |t: f64| vec![(2.0 * t + c) / 3.0, (t - c) / 3.0];
         ([f.text("(x+y)"), format!("x-2*y-({c})")], f.close().map(point))
     };
-    Case::new(&equations).with_simple(&points).with_others(f.n - 2)
+    Case::new(&equations).with_simple(&points).with_others(&vec![1; f.n - 2])
 }
 
 /// `(d x - 1) ... (d x - n)` for `d` = 1 or 2, and its roots.

@@ -5,6 +5,7 @@ mod classical;
 mod clusters;
 mod components;
 mod draw;
+mod extreme;
 mod multiple;
 mod plane;
 
@@ -15,7 +16,7 @@ pub(crate) use draw::Draw;
 pub(crate) type Kind = fn(&mut Draw) -> Case;
 
 /// The kinds of systems, by name.
-pub(crate) const KINDS: [(&str, Kind); 35] = [
+pub(crate) const KINDS: [(&str, Kind); 41] = [
     ("component not reduced", components::not_reduced),
     ("component near a solution", components::near),
     ("component with embedded points", components::embedded),
@@ -45,6 +46,12 @@ pub(crate) const KINDS: [(&str, Kind); 35] = [
     ("corank 5", multiple::corank::<5>),
     ("corank 3 beside regular", multiple::corank_beside_regular::<3>),
     ("corank 4 beside regular", multiple::corank_beside_regular::<4>),
+    ("extreme, nearly consistent", extreme::nearly_consistent),
+    ("extreme, far", extreme::far),
+    ("extreme, far and irrational", extreme::far_irrational),
+    ("extreme, irrational pairs", extreme::irrational_pairs),
+    ("extreme, nearly a component", extreme::nearly_a_component),
+    ("extreme, nearly real", extreme::nearly_real),
     ("Mignotte, one unknown", classical::mignotte),
     ("Mignotte, two unknowns", classical::mignotte_beside_a_curve),
     ("Wilkinson, one unknown", classical::wilkinson),
