@@ -42,6 +42,8 @@ pub(crate) enum Stream {
     Elsewhere,
     /// Products of permutations.
     Products,
+    /// Primes, modulo which exact numbers have images.
+    Primes,
 }
 
 impl Stream {
@@ -66,6 +68,7 @@ impl Stream {
             Stream::Multipliers => 8,
             Stream::Through => 10,
             Stream::Sizes => 12,
+            Stream::Primes => 16 + 4,
             Stream::Trace => 0x7ACE,
             Stream::Loop(k) => from(1 << 32, k),
         }
@@ -144,6 +147,7 @@ mod tests {
             Stream::Trace,
             Stream::Elsewhere,
             Stream::Products,
+            Stream::Primes,
         ];
         let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {

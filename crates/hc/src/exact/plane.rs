@@ -26,9 +26,9 @@ pub(super) fn term(monomial: &Monomial, c: &Exact, point: &[Digits]) -> Digits {
 
 /// All common roots of two polynomials in two unknowns to many digits, with their multiplicities, if
 /// they are few, isolated and clear.
-pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digits>, usize)>> {
+pub(super) fn points(polynomials: &[Polynomial<Exact>], seed: u64) -> Option<Vec<(Vec<Digits>, usize)>> {
     let equations: Vec<Polynomial<Exact>> = polynomials.iter().map(without_denominators).collect();
-    CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes))
+    CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes, seed))
 }
 
 /// A polynomial times a common denominator of its coefficients.
@@ -42,8 +42,9 @@ fn changed(
     equations: &[Polynomial<Exact>],
     polynomials: &[Polynomial<Exact>],
     changes: &[i32; 2],
+    seed: u64,
 ) -> Option<Vec<(Vec<Digits>, usize)>> {
-    let [first, second] = changes.map(|t| roots_with_multiplicities(&eliminated(equations, t)?));
+    let [first, second] = changes.map(|t| roots_with_multiplicities(&eliminated(equations, t)?, seed));
     let (first, second) = (first?, second?);
     let [t, s] = changes.map(f64::from);
     let mut taken = vec![false; second.len()];
@@ -108,7 +109,7 @@ mod tests {
     /// Real and imaginary parts of coordinates with multiplicities, sorted.
     fn found(text: &str) -> Option<Vec<(f64, f64, usize)>> {
         let polynomials = phcpack(text).unwrap().expand(&Default::default()).unwrap();
-        let points = points(&polynomials)?;
+        let points = points(&polynomials, 0)?;
         let mut all: Vec<_> = points.iter().map(|(p, m)| (p[0].to_c64().re, p[1].to_c64().re, *m)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         Some(all)

@@ -31,9 +31,9 @@ pub(crate) fn number_of_roots(polynomials: &[Polynomial<Exact>]) -> Option<usize
 
 /// All roots of a polynomial in one unknown to 45 digits, with their multiplicities: those of its
 /// square-free factors, which are simple; `None` if they are not all clear. Several may be one double.
-pub(super) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>) -> Option<Vec<(Digits, usize)>> {
+pub(super) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>, seed: u64) -> Option<Vec<(Digits, usize)>> {
     let mut all = Vec::new();
-    for (part, multiplicity) in squarefree(polynomial)? {
+    for (part, multiplicity) in squarefree(polynomial, seed)? {
         let has_zero = part.terms().iter().all(|(monomial, _)| monomial.exponents() != [0]);
         let roots = roots(&part)?.into_iter().chain(has_zero.then(Digits::zero));
         all.extend(roots.map(|root| (root, multiplicity)));

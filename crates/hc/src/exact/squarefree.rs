@@ -1,11 +1,11 @@
 //! A polynomial in one unknown as a product of powers of others without multiple roots, exactly.
 //!
-//! Arithmetic modulo a prime proves in little time that there are no multiple roots. Where there
+//! Arithmetic modulo a random prime proves in little time that there are no multiple roots. Where there
 //! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
 //! exact polynomials.
 
 use super::subresultants::{self, Gaussian, common_denominator};
-use crate::singular::{self, Residue, trimmed};
+use crate::singular::{self, PrimeField, Residue, trimmed};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -18,10 +18,10 @@ const MAX_DEGREE: usize = 3000;
 const MAX_WORK: f64 = 1e9;
 
 /// Factors without multiple roots and their exponents, whose product is the polynomial up to a
-/// constant; `None` for more than one unknown, negative exponents, or too much work.
-pub(super) fn squarefree(polynomial: &Polynomial<Exact>) -> Option<Vec<(Polynomial<Exact>, usize)>> {
+/// constant; `None` for more than one unknown, negative exponents, or too much work. The prime is drawn by the seed.
+pub(super) fn squarefree(polynomial: &Polynomial<Exact>, seed: u64) -> Option<Vec<(Polynomial<Exact>, usize)>> {
     let whole = dense(polynomial)?;
-    if is_squarefree(&whole) {
+    if is_squarefree(&whole, seed) {
         return Some(vec![(polynomial.clone(), 1)]);
     }
     let degree = (whole.len() - 1) as f64;
@@ -121,11 +121,14 @@ fn monic(a: Vec<Exact>) -> Vec<Exact> {
     }
 }
 
-/// Whether a polynomial has no multiple roots even modulo the prime. Where the coefficients have an
+/// Whether a polynomial has no multiple roots even modulo a prime. Where the coefficients have an
 /// image there and the degree stays, a square factor has one too.
-fn is_squarefree(whole: &[Exact]) -> bool {
-    let image = whole.iter().map(Residue::image).collect::<Option<Vec<Residue>>>();
-    image.is_some_and(|image| image.last().is_some_and(|c| !c.is_zero()) && singular::is_squarefree(image))
+fn is_squarefree(whole: &[Exact], seed: u64) -> bool {
+    let [field, _] = PrimeField::pair(seed, whole.iter());
+    field.run(|| {
+        let image = whole.iter().map(Residue::image).collect::<Option<Vec<Residue>>>();
+        image.is_some_and(|image| image.last().is_some_and(|c| !c.is_zero()) && singular::is_squarefree(image))
+    })
 }
 
 #[cfg(test)]
@@ -136,7 +139,7 @@ mod tests {
     fn parts(text: &str) -> Vec<(String, usize)> {
         let system = phcpack(&format!("1\n{text};")).unwrap();
         let polynomials = system.expand(&Default::default()).unwrap();
-        let parts = squarefree(&polynomials[0]).unwrap();
+        let parts = squarefree(&polynomials[0], 0).unwrap();
         parts.iter().map(|(p, k)| (p.display(&["x"]).to_string(), *k)).collect()
     }
 

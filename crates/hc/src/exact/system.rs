@@ -20,26 +20,29 @@ pub(crate) struct SmallSystem {
     equations: Vec<Polynomial<Exact>>,
     unknowns: Vec<usize>,
     others: Vec<(usize, Polynomial<Exact>)>,
+    /// By this primes are drawn.
+    seed: u64,
 }
 
 impl SmallSystem {
     /// Equations in as many unknowns, of which no more than two are left once explicit ones are
-    /// eliminated; `None` for any others.
-    pub(crate) fn new(polynomials: &[Polynomial<Exact>]) -> Option<SmallSystem> {
+    /// eliminated; `None` for any others. Primes are drawn by the seed.
+    pub(crate) fn new(polynomials: &[Polynomial<Exact>], seed: u64) -> Option<SmallSystem> {
         let count = polynomials.first()?.variables();
         let negative = |p: &Polynomial<Exact>| p.terms().iter().any(|(m, _)| m.exponents().iter().any(|&e| e < 0));
         if polynomials.len() != count || polynomials.iter().any(negative) {
             return None;
         }
-        SmallSystem::eliminated(polynomials).or_else(|| {
-            let alone = SmallSystem { equations: polynomials.to_vec(), unknowns: vec![0, 1], others: Vec::new() };
+        SmallSystem::eliminated(polynomials, seed).or_else(|| {
+            let (unknowns, others) = (vec![0, 1], Vec::new());
+            let alone = SmallSystem { equations: polynomials.to_vec(), unknowns, others, seed };
             (count == 2).then_some(alone)
         })
     }
 
     /// Eliminates unknowns that an equation gives explicitly, the expression of lowest degree first;
     /// `None` if more than two unknowns are left, or equations get too large.
-    fn eliminated(polynomials: &[Polynomial<Exact>]) -> Option<SmallSystem> {
+    fn eliminated(polynomials: &[Polynomial<Exact>], seed: u64) -> Option<SmallSystem> {
         let mut equations = polynomials.to_vec();
         let mut unknowns: Vec<usize> = (0..polynomials.len()).collect();
         let mut others = Vec::new();
@@ -78,27 +81,30 @@ impl SmallSystem {
             (equation.degree()? > 0).then_some(equation)
         };
         let equations = equations.iter().map(alone).collect::<Option<_>>()?;
-        (unknowns.len() <= 2).then_some(SmallSystem { equations, unknowns, others })
+        (unknowns.len() <= 2).then_some(SmallSystem { equations, unknowns, others, seed })
     }
 
     /// The number of solutions, with their multiplicities, if they are isolated and known at once.
     pub(crate) fn count(&self) -> Option<usize> {
         match &self.equations[..] {
             [equation] => usize::try_from(equation.degree()?).ok(),
-            equations => finite_solutions(equations),
+            equations => finite_solutions(equations, self.seed),
         }
     }
 
     /// Whether all solutions are isolated and simple; false tells nothing.
     pub(crate) fn are_simple(&self) -> bool {
-        all_simple(&self.equations)
+        all_simple(&self.equations, self.seed)
     }
 
     /// All solutions with their multiplicities, if they are isolated and all clear.
     pub(crate) fn solutions(&self) -> Option<Vec<(Vec<Digits>, usize)>> {
         let points: Vec<(Vec<Digits>, usize)> = match &self.equations[..] {
-            [equation] => roots_with_multiplicities(equation)?.into_iter().map(|(root, m)| (vec![root], m)).collect(),
-            equations => plane::points(equations)?,
+            [equation] => {
+                let roots = roots_with_multiplicities(equation, self.seed)?;
+                roots.into_iter().map(|(root, m)| (vec![root], m)).collect()
+            }
+            equations => plane::points(equations, self.seed)?,
         };
         let whole = |(left, multiplicity): (Vec<Digits>, usize)| {
             let mut values = vec![Digits::zero(); self.unknowns.len() + self.others.len()];
@@ -136,7 +142,7 @@ mod tests {
     fn unknowns_that_are_polynomials_in_others() {
         let of = |text: &str| {
             let system = phcpack(text).unwrap();
-            let small = SmallSystem::new(&system.expand(&Default::default()).unwrap())?;
+            let small = SmallSystem::new(&system.expand(&Default::default()).unwrap(), 0)?;
             let equations = small.equations.iter().map(|e| e.display(&["t", "s"][..small.unknowns.len()]).to_string());
             Some(equations.collect::<Vec<_>>().join("; "))
         };

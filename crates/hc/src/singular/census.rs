@@ -1,10 +1,12 @@
-//! All solutions of equations, counted by their multiplicities modulo a prime.
+//! All solutions of equations, counted by their multiplicities modulo random primes.
 
 use super::empty::{Macaulay, affine};
 use super::equations::ExactEquations;
-use super::modular::{Residue, divided, divisor, slope};
+use super::modular::{divided, divisor, slope};
+use super::prime_field::Residue;
 use super::quotient::Quotient;
 use crate::monitor::Monitor;
+use crate::random::{Random, Stream};
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
@@ -16,16 +18,25 @@ const MONOMIALS: usize = 2_500;
 /// How many solutions there are of each multiplicity.
 pub(crate) type Census = BTreeMap<usize, usize>;
 
-/// Counts all solutions, if they are finitely many; `None` if they are not, or where `limit` products modulo the prime
-/// do not tell.
+/// Counts all solutions, if they are finitely many; `None` if they are not, or where `limit` products modulo each
+/// of two primes do not tell, or these do not agree.
 ///
 /// The dimension of the quotient of the ring of polynomials by the equations is the number of solutions with their
 /// multiplicities. A general linear form acts on it with one eigenvalue at each solution, as often as its
 /// multiplicity (Cox, Little & O'Shea, Using Algebraic Geometry, section 4.2). All this holds modulo a prime as it does
-/// for the exact coefficients, unless the prime is one of the few that divide certain determinants.
+/// for the exact coefficients, unless the prime is one of the few that divide certain determinants. Two random primes have to agree.
 pub(crate) fn census(given: &ExactEquations, limit: u64, monitor: &Monitor) -> Option<Census> {
+    let mut random = Random::of(given.seed(), Stream::Through);
+    let mut here = || census_here(given, limit, &mut random, monitor);
+    let [first, second] = given.fields(&[]);
+    let found = first.run(&mut here)?;
+    second.run(here).filter(|other| *other == found)
+}
+
+/// [`census`] modulo the prime of the thread.
+fn census_here(given: &ExactEquations, limit: u64, random: &mut Random, monitor: &Monitor) -> Option<Census> {
     let equations = given.modular(EXPONENT)?;
-    let Some(affine) = affine(&equations, given.unknowns(), 0) else { return Some(Census::new()) };
+    let Some(affine) = affine(&equations, given.unknowns(), 0, random) else { return Some(Census::new()) };
     let left = affine.first().map_or(0, |form| form.len() - 1);
     let count = |degree: usize| (1..=degree).fold(1, |count, k| count * (left + k) / k);
     let highest = (1..=EXPONENT as usize).take_while(|&degree| count(degree) <= MONOMIALS).last()?;
@@ -36,11 +47,11 @@ pub(crate) fn census(given: &ExactEquations, limit: u64, monitor: &Monitor) -> O
         }
         if degree > 0
             && multiples.is_full(degree)
-            && let Some(quotient) = Quotient::new(&mut multiples, degree)
+            && let Some(quotient) = Quotient::new(&mut multiples, degree, random)
         {
             let dimension = quotient.dimension();
             multiples.spend(dimension.pow(3).saturating_mul(2))?;
-            return Some(multiplicities(characteristic(quotient.random_form())));
+            return Some(multiplicities(characteristic(quotient.random_form(random))));
         }
     }
     None
@@ -115,10 +126,10 @@ fn characteristic(mut matrix: Vec<Vec<Residue>>) -> Vec<Residue> {
 mod tests {
     use super::{Census, census, characteristic, multiplicities};
     use crate::monitor::Monitor;
-    use crate::singular::ExactEquations;
-    use crate::singular::modular::Residue;
+    use crate::singular::{ExactEquations, PrimeField, Residue};
     use num_traits::Zero;
-    use proptest::prelude::{Strategy, prop, prop_assert_eq, proptest};
+    use proptest::prelude::{any, prop, prop_assert_eq, proptest};
+    use std::cmp::Ordering;
 
     fn counted(text: &str) -> Option<Vec<(usize, usize)>> {
         let system: poly::System = text.parse().unwrap();
@@ -159,41 +170,46 @@ mod tests {
         }
     }
 
-    fn small() -> impl Strategy<Value = Residue> {
-        (0..5u64).prop_map(Residue::new)
-    }
-
     proptest! {
         /// A triangular matrix in other coordinates.
         #[test]
         fn eigenvalues_with_multiplicities(
-            roots in prop::collection::vec(small(), 1..8),
-            entries in prop::collection::vec(small(), 128),
+            seed in any::<u64>(),
+            roots in prop::collection::vec(0..5u64, 1..8),
+            entries in prop::collection::vec(0..5u64, 128),
         ) {
-            let n = roots.len();
-            let mut matrix: Vec<Vec<Residue>> = (0..n)
-                .map(|j| (0..n).map(|i| if i == j { roots[i] } else if i < j { entries[8 * i + j] } else { Residue::zero() }).collect())
-                .collect();
-            // Row operations with the inverse column operations.
-            for k in 0..n * n {
-                let (a, b, factor) = (k % n, k / n, entries[64 + k]);
-                if a != b {
-                    let from = matrix[a].clone();
-                    matrix[b].iter_mut().zip(&from).for_each(|(c, &d)| *c += factor * d);
-                    for column in &mut matrix {
-                        let c = column[b];
-                        column[a] -= factor * c;
-                    }
-                }
-            }
             let mut expected = Census::new();
             for value in 0..5 {
-                let count = roots.iter().filter(|&&root| root == Residue::new(value)).count();
+                let count = roots.iter().filter(|&&root| root == value).count();
                 if count > 0 {
                     *expected.entry(count).or_default() += 1;
                 }
             }
-            prop_assert_eq!(multiplicities(characteristic(matrix)), expected);
+            let [field, _] = PrimeField::pair(seed, std::iter::empty());
+            let found = field.run(|| {
+                let [roots, entries] = [roots, entries].map(|all| all.into_iter().map(Residue::new).collect::<Vec<_>>());
+                let n = roots.len();
+                let entry = |i: usize, j: usize| match i.cmp(&j) {
+                    Ordering::Less => entries[8 * i + j],
+                    Ordering::Equal => roots[i],
+                    Ordering::Greater => Residue::zero(),
+                };
+                let mut matrix: Vec<Vec<Residue>> = (0..n).map(|j| (0..n).map(|i| entry(i, j)).collect()).collect();
+                // Row operations with the inverse column operations.
+                for k in 0..n * n {
+                    let (a, b, factor) = (k % n, k / n, entries[64 + k]);
+                    if a != b {
+                        let from = matrix[a].clone();
+                        Residue::subtract(&mut matrix[b], -factor, &from);
+                        for column in &mut matrix {
+                            let c = column[b];
+                            column[a] -= factor * c;
+                        }
+                    }
+                }
+                multiplicities(characteristic(matrix))
+            });
+            prop_assert_eq!(found, expected);
         }
     }
 }

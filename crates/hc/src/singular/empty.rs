@@ -1,9 +1,10 @@
-//! Shows, by linear algebra modulo a prime, that a number of general hyperplanes meet no solution.
+//! Shows, by linear algebra modulo primes, that a number of general hyperplanes meet no solution.
 
 use super::equations::ExactEquations;
-use super::modular::{Echelon, PRIME, Residue, trimmed};
+use super::modular::{Echelon, trimmed};
 use super::monomials::Monomials;
 use super::multiplicity::Modular;
+use super::prime_field::Residue;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use num_traits::Zero;
@@ -21,12 +22,18 @@ const EXPONENT: u32 = 64;
 ///
 /// The hyperplanes eliminate `dimension` unknowns. Multiples of the equations up to a degree are then
 /// combined to the constant one (Lazard 1983; combinations that fall in degree are further equations,
-/// Ding et al. 2008). The arithmetic is modulo a prime of 64 bits, and the hyperplanes are random there.
-/// A proof modulo the prime is one for general hyperplanes, unless the prime is one of the few that
-/// divide certain determinants; the probability of this is tiny, but not zero.
+/// Ding et al. 2008). The arithmetic is modulo a random prime of 61 bits, and the hyperplanes are random there; all of
+/// it is done twice, by the seed of the equations. A proof modulo a prime is one for general hyperplanes, unless the prime is one
+/// of the few that divide certain determinants; the probability that both are is tiny, but not zero.
 pub(crate) fn is_missed(given: &ExactEquations, dimension: usize, monitor: &Monitor) -> bool {
+    let mut random = Random::of(given.seed(), Stream::Slice(dimension as u64));
+    given.fields(&[]).into_iter().all(|field| field.run(|| is_missed_here(given, dimension, &mut random, monitor)))
+}
+
+/// [`is_missed`] modulo the prime of the thread.
+fn is_missed_here(given: &ExactEquations, dimension: usize, random: &mut Random, monitor: &Monitor) -> bool {
     let Some(equations) = given.modular(EXPONENT) else { return false };
-    let Some(affine) = affine(&equations, given.unknowns(), dimension) else { return true };
+    let Some(affine) = affine(&equations, given.unknowns(), dimension, random) else { return true };
     let left = affine.first().map_or(0, |form| form.len() - 1);
     let count = |degree: usize| (1..=degree).fold(1, |count, k| count * (left + k) / k);
     let highest = (1..=EXPONENT as usize).take_while(|&degree| count(degree) <= MONOMIALS).last();
@@ -37,7 +44,12 @@ pub(crate) fn is_missed(given: &ExactEquations, dimension: usize, monitor: &Moni
 
 /// The unknowns as affine forms in the unknowns that linear equations and random hyperplanes leave:
 /// the coefficients, then the constant. `None` if these equations and hyperplanes have no solution.
-pub(super) fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<Residue>>> {
+pub(super) fn affine(
+    equations: &[Modular],
+    unknowns: usize,
+    dimension: usize,
+    random: &mut Random,
+) -> Option<Vec<Vec<Residue>>> {
     let mut rows = Echelon::new(unknowns + 1);
     for terms in equations {
         if terms.iter().all(|(powers, _)| powers.iter().map(|&(_, e)| e).sum::<u32>() <= 1) {
@@ -49,9 +61,8 @@ pub(super) fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -
             rows.add(row);
         }
     }
-    let mut random = Random::of(0, Stream::Slice(dimension as u64));
     for _ in 0..dimension {
-        rows.add((0..=unknowns).map(|_| Residue::new(random.below(PRIME))).collect());
+        rows.add((0..=unknowns).map(|_| Residue::random(random)).collect());
     }
     let free = rows.free();
     let (&constant, free) = free.split_last()?;
@@ -223,7 +234,7 @@ impl<'a> Macaulay<'a> {
             if self.work > self.limit || self.monitor.is_cancelled() {
                 return None;
             }
-            row.iter_mut().zip(known).for_each(|(c, &k)| *c -= leading * k);
+            Residue::subtract(&mut row, leading, known);
         }
     }
 }
@@ -231,12 +242,13 @@ impl<'a> Macaulay<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::{any, prop_assert_eq, proptest};
 
-    fn missed(text: &str, dimension: usize) -> bool {
+    fn missed(text: &str, dimension: usize, seed: u64) -> bool {
         let system: poly::System = text.parse().unwrap();
         let given =
             ExactEquations::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
-        is_missed(&given, dimension, &Monitor::default())
+        is_missed(&given.seeded(seed), dimension, &Monitor::default())
     }
 
     #[test]
@@ -250,7 +262,28 @@ mod tests {
             ("(x - y)^2; (x - y)*(x + y - 1)", 1),
         ] {
             for d in 0..3 {
-                assert_eq!(missed(text, d), d as i32 > dimension, "{text} {d}");
+                assert_eq!(missed(text, d, 0), d as i32 > dimension, "{text} {d}");
+            }
+        }
+    }
+
+    proptest! {
+        /// A conic, two points and a curve of degree four, with coefficients that are multiples of primes that serve
+        /// well: just below 2^61, 2^62, 2^63 and 2^64, and of the form 2^64 - 2^32 + 1.
+        #[test]
+        fn large_primes_as_coefficients(seed in any::<u64>(), which in 0usize..5, factor in 1u32..1000, below: bool) {
+            let prime = [(1u64 << 61) - 1, (1 << 62) - 57, (1 << 63) - 25, u64::MAX - 58, 0xFFFF_FFFF_0000_0001][which];
+            let (c, one) = if below { ("1".to_owned(), format!("{factor}/{prime}")) } else { (format!("{factor}*{prime}"), "1".to_owned()) };
+            for (text, dimension) in [
+                (format!("{c}*x*y - {one}"), 1),
+                (format!("{c}*(x - y) - {one}; x^2 + y^2 - 3"), 0),
+                (format!("{c}*(x*y + z - x^2) - {one}; x^2 + y^2 + z^2 - 3"), 1),
+                (format!("{c}*x*y - {one}; x*y - 2*{one}"), -1),
+            ] {
+                // Where points are left, and where nothing is: these are told at once.
+                for d in usize::try_from(dimension).into_iter().chain([(dimension + 1) as usize]) {
+                    prop_assert_eq!(missed(&text, d, seed), d as i32 > dimension, "{} {}", text, d);
+                }
             }
         }
     }

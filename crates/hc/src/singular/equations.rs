@@ -1,9 +1,9 @@
 //! The given equations with exact coefficients, and their values, derivatives and series near a
 //! point in numbers of any precision.
 
-use super::modular::Residue;
 use super::multiplicity::Modular;
 use super::number::{Number, largest};
+use super::prime_field::{PrimeField, Residue};
 use super::series::Basis;
 use crate::monitor::Monitor;
 use crate::tolerances::structure;
@@ -27,6 +27,8 @@ pub(crate) struct ExactEquations {
     limit: u64,
     /// Nothing more is done once this is cancelled.
     monitor: Monitor,
+    /// By this primes are drawn.
+    seed: u64,
 }
 
 /// The equations themselves, which clones of [`ExactEquations`] share.
@@ -109,7 +111,18 @@ impl ExactEquations {
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
         };
-        ExactEquations { exact: Arc::new(exact), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
+        ExactEquations {
+            exact: Arc::new(exact),
+            spent: Arc::default(),
+            limit: u64::MAX,
+            monitor: Monitor::default(),
+            seed: 0,
+        }
+    }
+
+    /// Draws primes by this seed, instead of zero.
+    pub(crate) fn seeded(self, seed: u64) -> ExactEquations {
+        ExactEquations { seed, ..self }
     }
 
     /// Ends all work on these equations once the monitor is cancelled.
@@ -119,7 +132,8 @@ impl ExactEquations {
 
     /// A copy with a work count of its own and this limit.
     pub(crate) fn limited(&self, limit: u64) -> ExactEquations {
-        ExactEquations { exact: self.exact.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
+        let (exact, monitor) = (self.exact.clone(), self.monitor.clone());
+        ExactEquations { exact, spent: Arc::default(), limit, monitor, seed: self.seed }
     }
 
     /// Whether the limit of the work is reached, or the work is cancelled.
@@ -148,7 +162,18 @@ impl ExactEquations {
         &self.exact.scale
     }
 
-    /// The equations modulo a prime, in the unknowns themselves; `None` if exponents are larger than
+    /// Two random fields in which the coefficients, and these numbers, have images that do not vanish.
+    pub(super) fn fields<'a>(&'a self, further: &'a [Exact]) -> [PrimeField; 2] {
+        let coefficients = self.exact.equations.iter().flatten().map(|t| &t.coefficient);
+        PrimeField::pair(self.seed, coefficients.chain(further))
+    }
+
+    /// By what primes are drawn.
+    pub(crate) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The equations modulo the prime of the thread, in the unknowns themselves; `None` if exponents are larger than
     /// this or the prime divides a denominator.
     pub(super) fn modular(&self, exponent: u32) -> Option<Vec<Modular>> {
         let term = |t: &Term| {

@@ -1,129 +1,7 @@
-//! Arithmetic modulo a prime, in which exact numbers have images. It proves statements in little
-//! time.
+//! Polynomials and matrices modulo a prime, by which statements are proved in little time.
 
-use num_bigint::{BigInt, Sign};
-use num_rational::BigRational;
+use super::prime_field::Residue;
 use num_traits::{One, Zero};
-use poly::Exact;
-use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
-
-/// A prime modulo which -1 is a square.
-pub(crate) const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
-/// A square root of -1.
-const ROOT: Residue = Residue(1 << 48);
-
-/// A residue modulo the prime, less than it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Residue(u64);
-
-impl Residue {
-    /// The residue of an integer.
-    pub(crate) fn new(value: u64) -> Residue {
-        Residue(value % PRIME)
-    }
-
-    pub(super) fn power(self, mut exponent: u64) -> Residue {
-        let (mut base, mut power) = (self, Residue(1));
-        while exponent > 0 {
-            if exponent & 1 == 1 {
-                power *= base;
-            }
-            base *= base;
-            exponent >>= 1;
-        }
-        power
-    }
-
-    /// The inverse; zero for zero.
-    pub(super) fn inverse(self) -> Residue {
-        self.power(PRIME - 2)
-    }
-
-    /// The image of an exact number; `None` where the prime divides a denominator.
-    pub(crate) fn image(c: &Exact) -> Option<Residue> {
-        let integer = |n: &BigInt| {
-            let size = Residue((n.magnitude() % PRIME).iter_u64_digits().next().unwrap_or(0));
-            if n.sign() == Sign::Minus { -size } else { size }
-        };
-        let rational = |q: &BigRational| {
-            let below = integer(q.denom());
-            (!below.is_zero()).then(|| integer(q.numer()) * below.inverse())
-        };
-        Some(rational(&c.re)? + ROOT * rational(&c.im)?)
-    }
-}
-
-fn difference(a: u64, b: u64) -> u64 {
-    if a >= b { a - b } else { a.wrapping_sub(b).wrapping_add(PRIME) }
-}
-
-fn sum(a: u64, b: u64) -> u64 {
-    difference(a, difference(0, b))
-}
-
-fn product(a: u64, b: u64) -> u64 {
-    let product = u128::from(a) * u128::from(b);
-    let (low, high) = (product as u64, (product >> 64) as u64);
-    // 2^64 is 2^32 - 1, and 2^96 is -1.
-    let (top, middle) = (high >> 32, (high & 0xFFFF_FFFF) * 0xFFFF_FFFF);
-    let low = if low >= PRIME { low - PRIME } else { low };
-    sum(difference(low, top), middle)
-}
-
-/// Operators, and those that assign, of numbers below the prime.
-macro_rules! operators {
-    ($($operator:ident::$name:ident, $assign:ident::$assign_name:ident: $of:ident;)*) => {$(
-        impl $operator for Residue {
-            type Output = Residue;
-
-            fn $name(self, other: Residue) -> Residue {
-                Residue($of(self.0, other.0))
-            }
-        }
-
-        impl $assign for Residue {
-            fn $assign_name(&mut self, other: Residue) {
-                self.0 = $of(self.0, other.0);
-            }
-        }
-    )*};
-}
-
-operators! {
-    Add::add, AddAssign::add_assign: sum;
-    Sub::sub, SubAssign::sub_assign: difference;
-    Mul::mul, MulAssign::mul_assign: product;
-}
-
-impl Neg for Residue {
-    type Output = Residue;
-
-    fn neg(self) -> Residue {
-        Residue(difference(0, self.0))
-    }
-}
-
-impl Zero for Residue {
-    fn zero() -> Residue {
-        Residue(0)
-    }
-
-    fn is_zero(&self) -> bool {
-        self.0 == 0
-    }
-}
-
-impl One for Residue {
-    fn one() -> Residue {
-        Residue(1)
-    }
-}
-
-impl From<u32> for Residue {
-    fn from(value: u32) -> Residue {
-        Residue(u64::from(value))
-    }
-}
 
 /// The coefficients of a polynomial by ascending powers without leading ones that are zero.
 pub(crate) fn trimmed<T: Zero>(mut coefficients: Vec<T>) -> Vec<T> {
@@ -172,16 +50,14 @@ pub(super) fn divided(a: &[Residue], by: &[Residue]) -> Vec<Residue> {
 /// A greatest common divisor, which is not zero, and the resultant, by Euclid's algorithm.
 fn euclid(mut a: Vec<Residue>, b: Vec<Residue>) -> (Vec<Residue>, Residue) {
     let mut b = trimmed(b);
-    let mut resultant = Residue(1);
+    let mut resultant = Residue::one();
     while let Some(&leading) = b.last() {
         let (before, degree) = (a.len() - 1, b.len() - 1);
         let factor = leading.inverse();
         while a.len() >= b.len() {
             let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
             let factor = last * factor;
-            for (r, &c) in a[place..].iter_mut().zip(&b) {
-                *r -= factor * c;
-            }
+            Residue::subtract(&mut a[place..], factor, &b);
         }
         a = trimmed(a);
         // res(a, b) = (-1)^(deg a deg b) lead(b)^(deg a - deg r) res(b, r) with the remainder r; if b is
@@ -198,7 +74,7 @@ fn euclid(mut a: Vec<Residue>, b: Vec<Residue>) -> (Vec<Residue>, Residue) {
         std::mem::swap(&mut a, &mut b);
     }
     if a.len() > 1 {
-        resultant = Residue(0);
+        resultant = Residue::zero();
     }
     (a, resultant)
 }
@@ -241,8 +117,8 @@ impl Echelon {
     /// The vector that all rows map to zero, with a one in column `free` and zeros in the other columns
     /// without a pivot.
     pub(super) fn null_vector(&self, free: usize) -> Vec<Residue> {
-        let mut vector = vec![Residue(0); self.width];
-        vector[free] = Residue(1);
+        let mut vector = vec![Residue::zero(); self.width];
+        vector[free] = Residue::one();
         for (column, row) in &self.rows {
             vector[*column] = -row[free];
         }
@@ -262,17 +138,19 @@ fn reduce(row: &mut [Residue], column: usize, other: &[Residue]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Echelon, PRIME, Residue, resultant};
-    use num_traits::Zero;
-    use proptest::prelude::{Strategy, prop, prop_assert_eq, proptest};
+    use super::super::prime_field::{PrimeField, Residue};
+    use super::{Echelon, resultant};
+    use num_traits::{One, Zero};
+    use proptest::prelude::{any, prop, prop_assert_eq, proptest};
 
-    fn residues() -> impl Strategy<Value = Residue> {
-        (0..PRIME).prop_map(Residue)
+    /// A random field.
+    fn field(seed: u64) -> PrimeField {
+        PrimeField::pair(seed, std::iter::empty())[0]
     }
 
     fn with_roots(leading: Residue, roots: &[Residue]) -> Vec<Residue> {
         roots.iter().fold(vec![leading], |p, &root| {
-            let mut next = vec![Residue(0)];
+            let mut next = vec![Residue::zero()];
             next.extend(&p);
             for (n, &c) in next.iter_mut().zip(&p) {
                 *n -= root * c;
@@ -282,51 +160,52 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn products_are_those_of_integers(a in 0..PRIME, b in 0..PRIME) {
-            let product = |a: u64, b: u64| u128::from((Residue(a) * Residue(b)).0);
-            prop_assert_eq!(product(a, b), u128::from(a) * u128::from(b) % u128::from(PRIME));
-            let edge = [0, 1, PRIME - 1, 0xFFFF_FFFF, 1 << 32, b];
-            for c in edge {
-                prop_assert_eq!(product(PRIME - 1, c), u128::from(PRIME - 1) * u128::from(c) % u128::from(PRIME));
-            }
-        }
-
         /// Rows are mapped to zero by as many vectors as the rank leaves.
         #[test]
-        fn null_vectors_of_few_rows(rows in prop::collection::vec(prop::collection::vec((0..3u64).prop_map(Residue), 5), 0..7)) {
-            let mut echelon = Echelon::new(5);
-            rows.iter().for_each(|row| echelon.add(row.clone()));
-            let free = echelon.free();
-            prop_assert_eq!(free.len() + echelon.rows.len(), 5);
-            for &k in &free {
-                let vector = echelon.null_vector(k);
-                for row in &rows {
-                    prop_assert_eq!(row.iter().zip(&vector).fold(Residue::zero(), |s, (&a, &b)| s + a * b), Residue(0));
+        fn null_vectors_of_few_rows(seed in any::<u64>(), rows in prop::collection::vec(prop::collection::vec(0..3u64, 5), 0..7)) {
+            field(seed).run(|| {
+                let mut echelon = Echelon::new(5);
+                let rows: Vec<Vec<Residue>> = rows.iter().map(|row| row.iter().map(|&c| Residue::new(c)).collect()).collect();
+                rows.iter().for_each(|row| echelon.add(row.clone()));
+                let free = echelon.free();
+                prop_assert_eq!(free.len() + echelon.rows.len(), 5);
+                for &k in &free {
+                    let vector = echelon.null_vector(k);
+                    for row in &rows {
+                        let sum = row.iter().zip(&vector).fold(Residue::zero(), |s, (&a, &b)| s + a * b);
+                        prop_assert_eq!(sum, Residue::zero());
+                    }
                 }
-            }
+                Ok(())
+            })?;
         }
 
         /// The product of the differences of all roots.
         #[test]
         fn resultants_are_those_of_the_roots(
-            a in prop::collection::vec(residues(), 0..6),
-            b in prop::collection::vec(residues(), 1..6),
-            leading in (1..PRIME, 1..PRIME),
+            seed in any::<u64>(),
+            a in prop::collection::vec(any::<u64>(), 0..6),
+            b in prop::collection::vec(any::<u64>(), 1..6),
+            leading in (1..1u64 << 60, 1..1u64 << 60),
         ) {
-            let leading = (Residue(leading.0), Residue(leading.1));
-            let mut want = Residue(1);
-            for &x in &a {
-                for &y in &b {
-                    want *= x - y;
+            field(seed).run(|| {
+                let [a, b] = [a, b].map(|roots| roots.into_iter().map(Residue::new).collect::<Vec<_>>());
+                let leading = (Residue::new(leading.0), Residue::new(leading.1));
+                let mut want = Residue::one();
+                for &x in &a {
+                    for &y in &b {
+                        want *= x - y;
+                    }
                 }
-            }
-            (0..b.len()).for_each(|_| want *= leading.0);
-            (0..a.len()).for_each(|_| want *= leading.1);
-            prop_assert_eq!(resultant(with_roots(leading.0, &a), with_roots(leading.1, &b)), want);
-            let mut shared = a;
-            shared.push(b[0]);
-            prop_assert_eq!(resultant(with_roots(leading.0, &shared), with_roots(leading.1, &b)), Residue(0));
+                (0..b.len()).for_each(|_| want *= leading.0);
+                (0..a.len()).for_each(|_| want *= leading.1);
+                prop_assert_eq!(resultant(with_roots(leading.0, &a), with_roots(leading.1, &b)), want);
+                let mut shared = a;
+                shared.push(b[0]);
+                let zero = resultant(with_roots(leading.0, &shared), with_roots(leading.1, &b));
+                prop_assert_eq!(zero, Residue::zero());
+                Ok(())
+            })?;
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The multiplicity of an isolated solution with rational coordinates, by its dual space modulo a
-//! prime.
+//! prime, that of the thread.
 
 use super::dual::Count;
-use super::modular::{Echelon, Residue};
+use super::modular::Echelon;
 use super::monomials::Monomials;
+use super::prime_field::Residue;
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 

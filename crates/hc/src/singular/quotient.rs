@@ -2,8 +2,8 @@
 //! number of solutions, with their multiplicities, and in which unknowns act as matrices.
 
 use super::empty::Macaulay;
-use super::modular::{PRIME, Residue};
-use crate::random::{Random, Stream};
+use super::prime_field::Residue;
+use crate::random::Random;
 use num_traits::{One, Zero};
 
 /// Random vectors on which products of matrices are compared.
@@ -22,7 +22,7 @@ impl Quotient {
     /// The monomials that are not leading ones span it. They are a basis, and matrices that reduce products of them with
     /// unknowns are the multiplications, if and only if these matrices commute and the equations vanish at them (Mourrain
     /// 1999, A new criterion for normal form algorithms). Both are seen on random vectors.
-    pub(super) fn new(multiples: &mut Macaulay<'_>, degree: usize) -> Option<Quotient> {
+    pub(super) fn new(multiples: &mut Macaulay<'_>, degree: usize, random: &mut Random) -> Option<Quotient> {
         let count = multiples.monomials.counts[degree];
         let basis: Vec<usize> = (0..count).filter(|&place| multiples.rows[place].is_none()).collect();
         let forms = normal_forms(multiples, &basis, count)?;
@@ -31,7 +31,7 @@ impl Quotient {
         let found = Quotient { matrices: (0..unknowns).map(matrix).collect() };
         let products = basis.len() * basis.len() * (unknowns * unknowns * VECTORS + count);
         multiples.spend(products)?;
-        (found.commutes() && found.solves(multiples)).then_some(found)
+        (found.commutes(random) && found.solves(multiples)).then_some(found)
     }
 
     /// The number of solutions, with their multiplicities.
@@ -40,11 +40,10 @@ impl Quotient {
     }
 
     /// The matrix, by columns, of a random linear form in the unknowns.
-    pub(super) fn random_form(&self) -> Vec<Vec<Residue>> {
-        let mut random = Random::of(0, Stream::Through);
+    pub(super) fn random_form(&self, random: &mut Random) -> Vec<Vec<Residue>> {
         let mut sum = vec![vec![Residue::zero(); self.dimension()]; self.dimension()];
         for matrix in &self.matrices {
-            let factor = Residue::new(random.below(PRIME));
+            let factor = Residue::random(random);
             for (sum, column) in sum.iter_mut().zip(matrix) {
                 sum.iter_mut().zip(column).for_each(|(s, &c)| *s += factor * c);
             }
@@ -52,10 +51,9 @@ impl Quotient {
         sum
     }
 
-    fn commutes(&self) -> bool {
-        let mut random = Random::of(0, Stream::Through);
+    fn commutes(&self, random: &mut Random) -> bool {
         (0..VECTORS).all(|_| {
-            let vector: Vec<Residue> = (0..self.dimension()).map(|_| Residue::new(random.below(PRIME))).collect();
+            let vector: Vec<Residue> = (0..self.dimension()).map(|_| Residue::random(random)).collect();
             let once: Vec<Vec<Residue>> = self.matrices.iter().map(|matrix| product(matrix, &vector)).collect();
             let pairs = |j: usize| (0..j).map(move |i| (i, j));
             (0..self.matrices.len())

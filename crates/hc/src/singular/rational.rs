@@ -4,8 +4,8 @@
 use super::dual::Count;
 use super::equations::ExactEquations;
 use super::kinds::{LocalStructure, residual};
-use super::modular::Residue;
 use super::multiplicity::{Modular, multiplicity};
+use super::prime_field::Residue;
 use crate::tolerances::structure;
 use num_bigint::BigInt;
 use num_complex::Complex64;
@@ -22,12 +22,12 @@ const EXPONENT: u32 = 512;
 /// The local structure at a rational point near the end of a path, if that point is a solution; at most
 /// `most` paths may end at any one point.
 ///
-/// The dual space of the local ring is computed modulo a prime. Modulo a prime it is at least as
-/// large, in every order, as it is with exact numbers. So if it is finite the solution is isolated,
-/// and its multiplicity is at most its dimension: less only if the prime divides one of the minors that
-/// matter. An isolated solution splits into as many solutions as paths end there. So if the dimension
-/// grows beyond the number of paths, the solution lies on a component, unless the prime divides such
-/// minors.
+/// The dual space of the local ring is computed modulo two random primes, which have to agree. Modulo a
+/// prime it is at least as large, in every order, as it is with exact numbers. So if it is finite the
+/// solution is isolated, and its multiplicity is at most its dimension: less only if both primes divide one
+/// of the minors that matter. An isolated solution splits into as many solutions as paths end there. So if
+/// the dimension grows beyond the number of paths, the solution lies on a component, unless both primes
+/// divide such minors.
 pub(super) fn at_rational(
     given: &ExactEquations,
     point: &[Complex64],
@@ -53,16 +53,14 @@ fn within(
 ) -> Option<Option<LocalStructure>> {
     let rational = |(z, &unit): (&Complex64, &i64)| rational(*z, unit, tolerance, denominator);
     let exact: Vec<Exact> = point.iter().zip(given.scales()).map(rational).collect::<Option<_>>()?;
-    let images: Vec<Residue> = exact.iter().map(Residue::image).collect::<Option<_>>()?;
-    let equations = given.modular(EXPONENT)?;
-    let term = |(powers, c): &(Vec<(usize, u32)>, Residue)| {
-        powers.iter().fold(*c, |product, &(j, e)| product * images[j].power(u64::from(e)))
-    };
-    let value = |terms: &Modular| terms.iter().map(term).fold(Residue::zero(), Residue::add);
-    if equations.iter().any(|terms| !value(terms).is_zero()) || !given.vanish_at(&exact) {
+    let [first, second] = given.fields(&exact);
+    let images = || exact.iter().map(Residue::image).collect::<Option<Vec<Residue>>>();
+    // Few values are computed exactly that are not zero.
+    if !first.run(|| Some(vanish(&given.modular(EXPONENT)?, &images()?)))? || !given.vanish_at(&exact) {
         return None;
     }
-    let multiplicity = multiplicity(&equations, &images, most.max(FEW));
+    let count = || Some(multiplicity(&given.modular(EXPONENT)?, &images()?, most.max(FEW)));
+    let multiplicity = first.run(count).filter(|found| second.run(count).as_ref() == Some(found));
     let unscaled = |z: &Exact, unit: i64| {
         let power = 2f64.powi(-unit as i32);
         Some(Complex64::new(z.re.to_f64()? * power, z.im.to_f64()? * power)).filter(|z| z.is_finite())
@@ -70,12 +68,20 @@ fn within(
     let point: Vec<Complex64> =
         exact.iter().zip(given.scales()).map(|(z, &unit)| unscaled(z, unit)).collect::<Option<_>>()?;
     let residual = residual(given, &point);
-    Some(match multiplicity {
+    Some(match multiplicity.unwrap_or(Count::Unclear) {
         Count::All(1) => Some(LocalStructure::Regular { point, residual }),
         Count::All(multiplicity) => Some(LocalStructure::Isolated { multiplicity, point, residual, is_exact: true }),
         Count::More => Some(LocalStructure::OnComponent { point, is_exact: true }),
         Count::Unfinished | Count::Unclear => None,
     })
+}
+
+/// Whether all equations vanish at a point.
+fn vanish(equations: &[Modular], point: &[Residue]) -> bool {
+    let term = |(powers, c): &(Vec<(usize, u32)>, Residue)| {
+        powers.iter().fold(*c, |product, &(j, e)| product * point[j].power(u64::from(e)))
+    };
+    equations.iter().all(|terms| terms.iter().map(term).fold(Residue::zero(), Residue::add).is_zero())
 }
 
 /// The rational with the least denominator near a coordinate in units of `2^unit`.

@@ -44,22 +44,23 @@ pub(super) struct Expanded<'a> {
 }
 
 impl<'a> Expanded<'a> {
-    /// Takes polynomials in unknowns whose units have these logarithms to base 2.
+    /// Takes polynomials in unknowns whose units have these logarithms to base 2, and a seed for primes.
     pub(super) fn new(
         polynomials: impl Into<Cow<'a, [Polynomial<Exact>]>>,
         units: Vec<i64>,
         exact: bool,
+        seed: u64,
         monitor: &Monitor,
     ) -> Expanded<'a> {
         let polynomials = polynomials.into();
-        let given = ExactEquations::new(&polynomials, units).stopped_by(monitor);
+        let given = ExactEquations::new(&polynomials, units).seeded(seed).stopped_by(monitor);
         let is_real = polynomials.iter().flat_map(|p| p.terms()).all(|(_, c)| c.im.is_zero());
         Expanded { polynomials, given, exact, is_real, small: OnceLock::new(), census: OnceLock::new() }
     }
 
     /// The equations, if they come down to one unknown or two.
     pub(super) fn small(&self) -> Option<&SmallSystem> {
-        self.small.get_or_init(|| SmallSystem::new(&self.polynomials)).as_ref()
+        self.small.get_or_init(|| SmallSystem::new(&self.polynomials, self.given.seed())).as_ref()
     }
 
     /// Whether coefficients are so different in size, or so long, that solutions may lie beyond where paths to infinity

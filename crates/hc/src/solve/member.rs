@@ -39,7 +39,7 @@ pub(crate) fn solve_member<'e, E: Evaluate>(
     let real_coefficients = systems[0].is_real() && target.iter().all(|p| p.im == 0.0);
     let in_doubt = |end: &Refined| is_real_in_doubt(&end.point, end.condition, real_coefficients);
     let asks = !ends.singular.is_empty() || ends.regular.values().any(in_doubt);
-    let expanded = if asks { expanded(systems, target, monitor) } else { None };
+    let expanded = if asks { expanded(systems, target, options.seed, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
     let tracked = expanded.as_ref().map(|(expanded, system, target)| Tracked {
@@ -118,6 +118,7 @@ fn followed<'e, E: Evaluate>(
 fn expanded(
     [family, square]: [&System; 2],
     target: &[Complex64],
+    seed: u64,
     monitor: &Monitor,
 ) -> Option<(Expanded<'static>, PathSystem, Vec<Complex64>)> {
     let at_target = |system: &System| system.at(target).ok()?.expand(&Default::default()).ok();
@@ -131,5 +132,5 @@ fn expanded(
     let system = PathSystem::of_terms(SparseSystem::new(unknowns, &supports).ok()?);
     let target = numbers.collect::<Option<_>>()?;
     // Combinations are rounded.
-    Some((Expanded::new(polynomials, vec![0; unknowns], is_square, monitor), system, target))
+    Some((Expanded::new(polynomials, vec![0; unknowns], is_square, seed, monitor), system, target))
 }

@@ -150,7 +150,8 @@ fn prepared<'a>(
     let equations = ScaledEquations::new(&conditioned(polynomials), names, context.named_sums)?;
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
-    let expanded = Some(Expanded::new(polynomials, equations.units(), exact, monitor));
+    let seed = context.outer.map_or(options.seed, ExactEquations::seed);
+    let expanded = Some(Expanded::new(polynomials, equations.units(), exact, seed, monitor));
     let roots = number_of_roots(polynomials).filter(|_| !options.torus_only);
     let square = if context.sliced { slack::squared(&equations, options, monitor)? } else { None };
     let (equations, slack, options) = match square {

@@ -57,8 +57,8 @@ pub struct Decomposition {
 /// Finds all components of the solution set of a system with their degrees and multiplicities, and
 /// the isolated solutions.
 ///
-/// For the highest dimensions, arithmetic modulo a prime of 64 bits mostly shows in little time
-/// that they have no components. This is wrong only if the prime divides certain determinants of
+/// For the highest dimensions, arithmetic modulo two random primes of 61 bits mostly shows in little
+/// time that they have no components. This is wrong only if both divide certain determinants of
 /// the equations with random hyperplanes. In each other dimension, the given equations together
 /// with as many general hyperplanes are [solved](crate::solve) with these options. These are too
 /// many equations: they are combined at random, or get further unknowns that vanish at the
@@ -104,7 +104,7 @@ fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     let formulas = Formulas::new(system, equations::FACTORS_OF_COMPONENTS, options)?;
     let polynomials = formulas.polynomials.as_ref().map_err(Clone::clone)?;
     let names = system.variables();
-    let equations = NamedEquations::new(polynomials, names.len());
+    let equations = NamedEquations::new(polynomials, names.len(), options.seed);
     let lowest = names.len().saturating_sub(system.len());
     let mut all = Decomposition { variables: names.to_vec(), ..Decomposition::default() };
     let mut missed = true;

@@ -18,10 +18,10 @@ pub(super) struct NamedEquations<'a> {
 }
 
 impl<'a> NamedEquations<'a> {
-    /// Equations in all unknowns, of which the first `unknowns` were given.
-    pub(super) fn new(polynomials: &'a [Polynomial<Exact>], unknowns: usize) -> NamedEquations<'a> {
+    /// Equations in all unknowns, of which the first `unknowns` were given, and a seed for primes.
+    pub(super) fn new(polynomials: &'a [Polynomial<Exact>], unknowns: usize, seed: u64) -> NamedEquations<'a> {
         let all = polynomials.first().map_or(unknowns, Polynomial::variables);
-        NamedEquations { polynomials, all: ExactEquations::new(polynomials, vec![0; all]), unknowns }
+        NamedEquations { polynomials, all: ExactEquations::new(polynomials, vec![0; all]).seeded(seed), unknowns }
     }
 
     /// How many unknowns are named sums.
@@ -67,7 +67,7 @@ mod tests {
         let system: poly::System = "((x + y)^20 + x)^20 = y".parse().unwrap();
         let named = system.with_named_sums(3, 8).unwrap();
         let polynomials = named.expand(&Default::default()).unwrap();
-        let equations = NamedEquations::new(&polynomials, 2);
+        let equations = NamedEquations::new(&polynomials, 2, 0);
         let point = equations.completed(vec![3.0.into(), Complex64::new(-2.0, 0.0)]);
         let mut sums: Vec<f64> = point[2..].iter().map(|z| z.re).collect();
         sums.sort_by(f64::total_cmp);

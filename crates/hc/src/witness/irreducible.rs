@@ -144,7 +144,7 @@ mod tests {
             solve_polynomials(&sliced, system.variables(), &options, &monitor, SolveContext::default()).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
-        let [set] = &WitnessSet::all(&NamedEquations::new(&given, 2), &slices, &points, 0)[..] else {
+        let [set] = &WitnessSet::all(&NamedEquations::new(&given, 2, 0), &slices, &points, 0)[..] else {
             panic!("one set")
         };
         let deviation = |points: &[Vec<Complex64>]| {
@@ -166,7 +166,7 @@ mod tests {
             let [a, b, c] = slices.parameters()[..] else { panic!("one line") };
             // On the line, as far as the parabola is flat there.
             let x = c / (a + b * y(Complex64::from(1.0)));
-            let equations = NamedEquations::new(&given, 2);
+            let equations = NamedEquations::new(&given, 2, 0);
             let [set] = &WitnessSet::all(&equations, &slices, &[vec![x, y(x)]], 0)[..] else { panic!("one set") };
             let [orbit] = &orbits(set, &equations, 0, &Monitor::default())[..] else { panic!("one orbit") };
             orbit.is_whole()

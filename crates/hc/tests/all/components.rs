@@ -45,6 +45,17 @@ fn curves() {
     check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 3, &[(1, 1, 2)], 1);
 }
 
+/// Coefficients that are multiples of large primes, just below powers of two and of the form 2^64 - 2^32 + 1.
+#[test]
+fn coefficients_that_primes_divide() {
+    for prime in [(1u64 << 61) - 1, (1 << 63) - 25, u64::MAX - 58, 0xFFFF_FFFF_0000_0001] {
+        check(&format!("1 2\n{prime}*x*y-3*{prime};"), 2, &[(1, 2, 1)], 0);
+        check(&format!("2\n{prime}*(x-y)-1;\nx^2+y^2-3;"), 2, &[], 2);
+        check(&format!("2 3\n{prime}*(x*y+z-x^2)-1;\nx^2+y^2+z^2-3;"), 2, &[(1, 4, 1)], 0);
+        check(&format!("2 3\n(x*y+z-x^2)/{prime};\nx^2+y^2+z^2-3;"), 2, &[(1, 4, 1)], 0);
+    }
+}
+
 /// Powers of ideals: of a circle, of several curves together, of the twisted cubic (the square of its
 /// ideal of two equations, of length three), and of a plane with two lines across it.
 #[test]
