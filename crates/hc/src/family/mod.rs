@@ -48,7 +48,7 @@ pub use search::{Monodromy, MonodromyOptions, Multiple, Stopped, TraceTest};
 pub use start_file::{StartFile, StartFileError};
 pub use stated::Stated;
 pub use targets::Targets;
-pub(crate) use trace::deviation;
+pub(crate) use trace::Bends;
 pub use track::{FibreTracker, move_fibre, track_fibre};
 
 #[cfg(all(test, feature = "threads"))]

@@ -133,7 +133,7 @@ fn on_sizes<E: Evaluate>(
     let (Some(second), Some(third)) = (moved(ends, 0, &filled, 2.0), moved(ends, 1, &filled, 3.0)) else {
         return FAILED;
     };
-    let deviation = deviation(enlarged.system, &[&filled, &second, &third], n + 1);
+    let deviation = Bends::new(enlarged.system, &[&filled, &second, &third], n + 1).deviation();
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
     let (paths, counts) = enlarged.track(&filled, &at(0.0), &careful, pieces);
@@ -163,30 +163,81 @@ pub(super) fn enlarge(system: &System) -> Result<Option<Interpreter>, CompileErr
     enlarged.ok().map(|enlarged| enlarged.compile()).transpose()
 }
 
-/// How far the sum of the points of three fibres at equal distances, in the same order, deviates from a
-/// straight line: the largest deviation among the first `n` coordinates, each relative to the deviations
-/// of the single points. It depends neither on the scale nor on how far the points move.
-pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize) -> f64 {
-    let zero = ComplexDd::from(Complex64::default());
-    let mut refiner = Refiner::new(system);
-    // In double-double: far points would drown the others.
-    let (mut whole, mut single, mut sizes) = (vec![zero; n], vec![0.0; n], vec![0.0; n]);
-    for k in 0..fibres[0].len() {
-        let [a, b, c] = fibres.map(|fibre| refiner.extend(&fibre.parameters, fibre.solution(k)));
-        for j in 0..n {
-            let bend = Scalar::sub(&Scalar::add(&a[j], &c[j]), &Scalar::add(&b[j], &b[j]));
-            whole[j] = Scalar::add(&whole[j], &bend);
-            single[j] += Complex64::from(bend).norm();
-            sizes[j] += Complex64::from(b[j]).norm();
+/// How the points of three fibres at equal distances, in the same order, bend: the second differences of their first
+/// coordinates.
+pub(crate) struct Bends {
+    /// By points.
+    points: Vec<Vec<ComplexDd>>,
+    /// The size of the largest coordinate: other coordinates may be zero except for its rounding errors.
+    size: f64,
+}
+
+/// Parts are sought among so many points at most.
+const PARTED: usize = 20;
+/// Sums of doubles up to this share of their terms are looked at in double-double.
+const NEARLY_STRAIGHT: f64 = 1e-12;
+
+impl Bends {
+    /// For the first `n` coordinates.
+    pub(crate) fn new<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize) -> Bends {
+        let mut refiner = Refiner::new(system);
+        let (mut points, mut sizes) = (Vec::new(), vec![0.0; n]);
+        for k in 0..fibres[0].len() {
+            // In double-double: far points would drown the others.
+            let [a, b, c] = fibres.map(|fibre| refiner.extend(&fibre.parameters, fibre.solution(k)));
+            let bend = |j: usize| Scalar::sub(&Scalar::add(&a[j], &c[j]), &Scalar::add(&b[j], &b[j]));
+            points.push((0..n).map(bend).collect());
+            sizes.iter_mut().zip(&b).for_each(|(size, z)| *size += Complex64::from(*z).norm());
         }
+        Bends { points, size: sizes.into_iter().fold(0.0, f64::max) }
     }
-    // The size of the largest coordinate: other coordinates may be zero except for its rounding
-    // errors.
-    let size = sizes.iter().copied().fold(0.0, f64::max);
-    let relative = |j: usize| {
-        let off = Complex64::from(whole[j]).norm();
-        if off <= families::STRAIGHT * size { 0.0 } else { off / single[j] }
-    };
-    let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
-    (0..n).map(relative).fold(0.0, largest)
+
+    /// How far the sum of all points deviates from a straight line: the largest deviation among coordinates, each
+    /// relative to the deviations of the single points. It depends neither on the scale nor on how far the points move.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation_of(&(0..self.points.len()).collect::<Vec<_>>())
+    }
+
+    /// [`deviation`](Self::deviation) of some points.
+    fn deviation_of(&self, which: &[usize]) -> f64 {
+        let relative = |j: usize| {
+            let zero = ComplexDd::from(Complex64::default());
+            let all = || which.iter().map(|&k| &self.points[k][j]);
+            let off = Complex64::from(all().fold(zero, |sum, bend| Scalar::add(&sum, bend))).norm();
+            if off <= families::STRAIGHT * self.size {
+                0.0
+            } else {
+                off / all().map(|bend| Complex64::from(*bend).norm()).sum::<f64>()
+            }
+        };
+        let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+        (0..self.points.first().map_or(0, Vec::len)).map(relative).fold(0.0, largest)
+    }
+
+    /// The least part of the points, with the first one, whose sum moves straight, with its deviation; `None` if all
+    /// have to be taken together, or are too many to try. Part of an irreducible component never moves straight.
+    pub(crate) fn least_part(&self) -> Option<(Vec<usize>, f64)> {
+        let count = self.points.len();
+        if !(2..=PARTED).contains(&count) {
+            return None;
+        }
+        // One coordinate for all: few parts pass by it that do not pass.
+        let mut random = Random::of(0, Stream::Trace);
+        let factors: Vec<Complex64> = (0..self.points[0].len()).map(|_| random.unit()).collect();
+        let mixed = |bend: &Vec<ComplexDd>| bend.iter().zip(&factors).map(|(z, f)| Complex64::from(*z) * f).sum();
+        let mixed: Vec<Complex64> = self.points.iter().map(mixed).collect();
+        let mut parts: Vec<usize> = (0..(1usize << (count - 1)) - 1).collect();
+        parts.sort_by_key(|part| part.count_ones());
+        parts.into_iter().find_map(|part| {
+            let others = (1..count).filter(|k| part >> (k - 1) & 1 == 1);
+            let which: Vec<usize> = std::iter::once(0).chain(others).collect();
+            let sum: Complex64 = which.iter().map(|&k| mixed[k]).sum();
+            let terms: f64 = which.iter().map(|&k| mixed[k].norm()).sum();
+            if sum.norm() > NEARLY_STRAIGHT * terms.max(self.size) {
+                return None;
+            }
+            let deviation = self.deviation_of(&which);
+            (deviation < families::TRACE_PASSED).then_some((which, deviation))
+        })
+    }
 }

@@ -4,7 +4,7 @@
 use super::equations::NamedEquations;
 use super::set::WitnessSet;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre};
+use crate::family::{Bends, Fibre, FibreOptions, MonodromyOptions, monodromy, move_fibre};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::tolerances::{families, same, witness};
@@ -51,8 +51,17 @@ pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64
             let tells = |trace: &Trace| {
                 trace.deviation >= families::TRACE_PASSED || fibre.len() > 1 || trace.follows_a_plane(equations)
             };
-            deviation = found.filter(tells).map(|trace| trace.deviation);
-            if deviation.is_some_and(|deviation| deviation < families::TRACE_PASSED) || monitor.is_cancelled() {
+            deviation = found.as_ref().filter(|&trace| tells(trace)).map(|trace| trace.deviation);
+            if deviation.is_some_and(|deviation| deviation < families::TRACE_PASSED) {
+                // Loops may have jumped from one component to another that is close to it.
+                if let Some((part, of_part)) = found.as_ref().and_then(|trace| trace.part(equations)) {
+                    let points = part.iter().flat_map(|&k| fibre.solution(k).to_vec()).collect();
+                    fibre = Fibre::new(all.parameters.clone(), all.dimension, points);
+                    deviation = Some(of_part);
+                }
+                break;
+            }
+            if monitor.is_cancelled() {
                 break;
             }
             let known = fibre.len();
@@ -63,11 +72,18 @@ pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64
                 break;
             }
         }
-        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < same::REGULAR);
-        let (here, others): (Vec<usize>, Vec<usize>) = left.iter().copied().partition(|k| *k == first || is_found(k));
+        // Each point of the fibre is one of the witness points, the first one the first, however close others are.
+        let mut here = vec![first];
+        for x in fibre.iter().skip(1) {
+            let distance = |k: usize| relative_distance(x, all.solution(k));
+            let others = left.iter().copied().filter(|k| !here.contains(k));
+            let nearest = others.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+            here.extend(nearest.filter(|&k| distance(k) < same::REGULAR));
+        }
+        here.sort_unstable();
         let further = fibre.len().saturating_sub(here.len());
+        left.retain(|k| !here.contains(k));
         orbits.push(Orbit { points: here.iter().map(|&k| numbers[k]).collect(), trace: deviation, further });
-        left = others;
     }
     orbits
 }
@@ -87,6 +103,8 @@ struct Trace {
     /// rounding error if they are all points of one or more components. Only given coordinates count: named
     /// sums are polynomials in them, and multipliers rational functions of the hyperplanes.
     deviation: f64,
+    /// How each of the points bends.
+    bends: Bends,
     /// The first of the points, before and after the first step.
     first: [Vec<Complex64>; 2],
 }
@@ -95,6 +113,13 @@ struct Trace {
 const FAR: [i32; 4] = [6, 18, 36, 54];
 
 impl Trace {
+    /// The least part of the points with the first one that moves straight by itself, with its deviation, if that is not
+    /// all of them.
+    fn part(&self, equations: &NamedEquations<'_>) -> Option<(Vec<usize>, f64)> {
+        // A single point of a set that hardly bends seems to move straight.
+        self.bends.least_part().filter(|(part, _)| part.len() > 1 || self.follows_a_plane(equations))
+    }
+
     /// Whether the plane in which the first point seems to stay, by its first step, solves the equations
     /// as far out as doubles tell.
     fn follows_a_plane(&self, equations: &NamedEquations<'_>) -> bool {
@@ -121,8 +146,8 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, mon
     let moved = |fibre: &Fibre, s: f64| move_fibre(family, fibre, &at(s), &options, monitor).map(settled);
     let second = moved(fibre, 1.0)?;
     let third = moved(&second, 2.0)?;
-    let deviation = deviation(family, &[fibre, &second, &third], unknowns);
-    Some(Trace { deviation, first: [fibre, &second].map(|fibre| fibre.solution(0).to_vec()) })
+    let bends = Bends::new(family, &[fibre, &second, &third], unknowns);
+    Some(Trace { deviation: bends.deviation(), bends, first: [fibre, &second].map(|fibre| fibre.solution(0).to_vec()) })
 }
 
 #[cfg(test)]

@@ -149,3 +149,26 @@ fn adjacent_minors() {
     of(4, &[4, 2, 2], 1);
     of(5, &[5, 4, 3, 3, 1], 4);
 }
+
+/// Components whose points lie 1e-5 to 1e-12 apart, where loops jump from one to the other: each is found, or is not
+/// said to be irreducible.
+#[test]
+fn components_that_are_close_are_not_one() {
+    for (text, degree, count) in [
+        ("(x*y-1)^2 = 1e-18", 2, 2),
+        ("(x^2+y^2+z^2-1)^2 = 1e-14", 2, 2),
+        ("(x*y+z^2-1)*(x*y+z^2-1-1e-5)", 2, 2),
+        // So close that points on two of the lines may be one to all digits of a path.
+        ("(x-y)*(x-y-1e-12)\nz*(x-3)", 1, 0),
+        ("(x*y+z-1)^2 = 1e-12\nx+2*y-z+3", 2, 2),
+    ] {
+        let mut most = 0;
+        for seed in 0..3 {
+            let found = decompose(&text.parse().unwrap(), &SolveOptions::new().seed(seed)).unwrap();
+            let irreducible = found.components.iter().filter(|c| c.irreducible);
+            assert!(irreducible.clone().all(|c| c.degree == degree), "{text} {seed}: {:?}", found.components);
+            most = most.max(irreducible.count());
+        }
+        assert!(most >= count, "{text}");
+    }
+}
