@@ -47,8 +47,8 @@ pub(super) struct Walker {
     vague: Option<Ending>,
     /// How it goes to infinity by a clear loop, until it has been followed far out.
     diverges: Option<Ending>,
-    /// Whether the equations are to be asked about that.
-    expects: bool,
+    /// Whether the equations have not been asked about that yet.
+    is_unasked: bool,
     middle: Vec<Complex64>,
     end: Option<Ending>,
 }
@@ -217,19 +217,19 @@ impl Walker {
         self.x.copy_from_slice(first);
         self.samples.clear();
         self.radius = radius.max(endgame::LEAST_RADIUS);
-        self.expects = true;
+        self.is_unasked = true;
         self.diverges = Some(end);
     }
 
     /// Time and point of a path that goes to infinity by a loop, if the equations have not been asked about it.
     pub(super) fn claim(&self) -> Option<(f64, &[Complex64])> {
-        self.expects.then_some((self.at, &self.x))
+        self.is_unasked.then_some((self.at, &self.x))
     }
 
     /// Takes what the equations say of that: whether their leading terms cancel. If they do not, the path is followed
     /// until it is very far out.
     pub(super) fn judge(&mut self, cancels: bool) {
-        self.expects = false;
+        self.is_unasked = false;
         if cancels && let Some(end) = self.diverges.take() {
             self.settle(end);
         }

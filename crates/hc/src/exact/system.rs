@@ -29,8 +29,7 @@ impl SmallSystem {
     /// eliminated; `None` for any others. Primes are drawn by the seed.
     pub(crate) fn new(polynomials: &[Polynomial<Exact>], seed: u64) -> Option<SmallSystem> {
         let count = polynomials.first()?.variables();
-        let negative = |p: &Polynomial<Exact>| p.terms().iter().any(|(m, _)| m.exponents().iter().any(|&e| e < 0));
-        if polynomials.len() != count || polynomials.iter().any(negative) {
+        if polynomials.len() != count || polynomials.iter().any(Polynomial::is_laurent) {
             return None;
         }
         SmallSystem::eliminated(polynomials, seed).or_else(|| {

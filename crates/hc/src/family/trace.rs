@@ -174,8 +174,6 @@ pub(crate) struct Bends {
 
 /// Parts are sought among so many points at most.
 const PARTED: usize = 20;
-/// Sums of doubles up to this share of their terms are looked at in double-double.
-const NEARLY_STRAIGHT: f64 = 1e-12;
 
 impl Bends {
     /// For the first `n` coordinates.
@@ -229,13 +227,13 @@ impl Bends {
         let mut parts: Vec<usize> = (0..(1usize << (count - 1)) - 1).collect();
         parts.sort_by_key(|part| part.count_ones());
         parts.into_iter().find_map(|part| {
-            let others = (1..count).filter(|k| part >> (k - 1) & 1 == 1);
-            let which: Vec<usize> = std::iter::once(0).chain(others).collect();
-            let sum: Complex64 = which.iter().map(|&k| mixed[k]).sum();
-            let terms: f64 = which.iter().map(|&k| mixed[k].norm()).sum();
-            if sum.norm() > NEARLY_STRAIGHT * terms.max(self.size) {
+            let which = || std::iter::once(0).chain((1..count).filter(|k| part >> (k - 1) & 1 == 1));
+            let sum: Complex64 = which().map(|k| mixed[k]).sum();
+            let terms: f64 = which().map(|k| mixed[k].norm()).sum();
+            if sum.norm() > families::NEARLY_STRAIGHT * terms.max(self.size) {
                 return None;
             }
+            let which: Vec<usize> = which().collect();
             let deviation = self.deviation_of(&which);
             (deviation < families::TRACE_PASSED).then_some((which, deviation))
         })

@@ -24,7 +24,8 @@ pub(crate) type Census = BTreeMap<usize, usize>;
 /// The dimension of the quotient of the ring of polynomials by the equations is the number of solutions with their
 /// multiplicities. A general linear form acts on it with one eigenvalue at each solution, as often as its
 /// multiplicity (Cox, Little & O'Shea, Using Algebraic Geometry, section 4.2). All this holds modulo a prime as it does
-/// for the exact coefficients, unless the prime is one of the few that divide certain determinants. Two random primes have to agree.
+/// for the exact coefficients, unless the prime is one of the few that divide certain determinants. Two random primes
+/// have to agree.
 pub(crate) fn census(given: &ExactEquations, limit: u64, monitor: &Monitor) -> Option<Census> {
     let mut random = Random::of(given.seed(), Stream::Through);
     let mut here = || census_here(given, limit, &mut random, monitor);
@@ -71,7 +72,7 @@ fn multiplicities(whole: Vec<Residue>) -> Census {
         let mut difference = other.clone();
         let own = slope(&rest);
         difference.resize(difference.len().max(own.len()), Residue::zero());
-        difference.iter_mut().zip(&own).for_each(|(d, &s)| *d -= s);
+        Residue::subtract(&mut difference, Residue::one(), &own);
         let part = divisor(rest.clone(), difference.clone());
         (rest, other) = (divided(&rest, &part), divided(&difference, &part));
         if part.len() > 1 {
@@ -101,7 +102,7 @@ fn characteristic(mut matrix: Vec<Vec<Residue>>) -> Vec<Residue> {
                 column[i] -= factor * c;
             }
             let (before, after) = matrix.split_at_mut(i);
-            before[m].iter_mut().zip(&after[0]).for_each(|(c, &d)| *c += factor * d);
+            Residue::subtract(&mut before[m], -factor, &after[0]);
         }
     }
     let mut minors: Vec<Vec<Residue>> = vec![vec![Residue::one()]];
@@ -110,12 +111,12 @@ fn characteristic(mut matrix: Vec<Vec<Residue>>) -> Vec<Residue> {
         let mut next = vec![Residue::zero()];
         next.extend(&minors[m]);
         let diagonal = matrix[m][m];
-        next.iter_mut().zip(&minors[m]).for_each(|(n, &c)| *n -= diagonal * c);
+        Residue::subtract(&mut next, diagonal, &minors[m]);
         let mut round = Residue::one();
         for i in (0..m).rev() {
             round *= matrix[i][i + 1];
             let factor = round * matrix[m][i];
-            next.iter_mut().zip(&minors[i]).for_each(|(n, &c)| *n -= factor * c);
+            Residue::subtract(&mut next, factor, &minors[i]);
         }
         minors.push(next);
     }

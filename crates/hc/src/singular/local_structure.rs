@@ -43,26 +43,6 @@ pub(crate) fn local_structure(
     if is_no_solution(given, point, error) {
         return LocalStructure::NotASolution;
     }
-    let found = structure_by_digits(given, point, paths, most, error, effort);
-    match &found {
-        LocalStructure::Regular { point, .. } if given.len() > given.unknowns() => match consistency(given, point) {
-            Consistency::Solves => found,
-            Consistency::Misses => LocalStructure::NotASolution,
-            Consistency::Unclear => LocalStructure::Unresolved(UnresolvedReason::Unclear),
-        },
-        _ => found,
-    }
-}
-
-/// [`local_structure`] at a point near which equations nearly vanish, in as many digits as show it.
-fn structure_by_digits(
-    given: &ExactEquations,
-    point: &[Complex64],
-    paths: usize,
-    most: usize,
-    error: f64,
-    effort: Effort,
-) -> LocalStructure {
     let rational = LazyCell::new(|| at_rational(given, point, error, most));
     let is_on_component = |found: &LocalStructure| matches!(found, LocalStructure::OnComponent { .. });
     // In this order, as far as one tells something. A rational point on a component counts only where more
@@ -168,7 +148,13 @@ fn regular_from<S: Precision>(
         return None;
     }
     let (point, residual) = rounded(given, local, &found.point);
-    Some(LocalStructure::Regular { point, residual })
+    // Digits that show a solution need not show that an equation more is not zero there.
+    let consistency = if given.len() > point.len() { consistency(given, &point) } else { Consistency::Solves };
+    Some(match consistency {
+        Consistency::Solves => LocalStructure::Regular { point, residual },
+        Consistency::Misses => LocalStructure::NotASolution,
+        Consistency::Unclear => LocalStructure::Unresolved(UnresolvedReason::Unclear),
+    })
 }
 
 /// A point on a set of positive dimension at the end of a path. The path seemed to lead to a

@@ -40,7 +40,7 @@ pub(super) fn divided(a: &[Residue], by: &[Residue]) -> Vec<Residue> {
     while rest.len() >= by.len() {
         let (place, Some(last)) = (rest.len() - by.len(), rest.pop()) else { break };
         let factor = last * inverse;
-        rest[place..].iter_mut().zip(by).for_each(|(r, &c)| *r -= factor * c);
+        Residue::subtract(&mut rest[place..], factor, by);
         quotient.push(factor);
     }
     quotient.reverse();

@@ -45,7 +45,7 @@ impl Quotient {
         for matrix in &self.matrices {
             let factor = Residue::random(random);
             for (sum, column) in sum.iter_mut().zip(matrix) {
-                sum.iter_mut().zip(column).for_each(|(s, &c)| *s += factor * c);
+                Residue::subtract(sum, -factor, column);
             }
         }
         sum
@@ -88,7 +88,7 @@ impl Quotient {
             let mut sum = vec![Residue::zero(); dimension];
             for (&c, value) in equation.row.iter().zip(&values).filter(|(c, _)| !c.is_zero()) {
                 let Some(value) = value else { return false };
-                sum.iter_mut().zip(value).for_each(|(s, &v)| *s += c * v);
+                Residue::subtract(&mut sum, -c, value);
             }
             sum.iter().all(Zero::is_zero)
         })
@@ -106,7 +106,7 @@ fn normal_forms(multiples: &mut Macaulay<'_>, basis: &[usize], count: usize) -> 
             (_, Ok(k)) => form[k] = Residue::one(),
             (Some(row), _) => {
                 for (&c, known) in row[..place].iter().zip(&forms).filter(|(c, _)| !c.is_zero()) {
-                    form.iter_mut().zip(known).for_each(|(f, &k)| *f -= c * k);
+                    Residue::subtract(&mut form, c, known);
                 }
             }
             (None, Err(_)) => return None,
@@ -119,7 +119,7 @@ fn normal_forms(multiples: &mut Macaulay<'_>, basis: &[usize], count: usize) -> 
 fn product(columns: &[Vec<Residue>], vector: &[Residue]) -> Vec<Residue> {
     let mut sum = vec![Residue::zero(); vector.len()];
     for (column, &factor) in columns.iter().zip(vector).filter(|(_, c)| !c.is_zero()) {
-        sum.iter_mut().zip(column).for_each(|(s, &c)| *s += factor * c);
+        Residue::subtract(&mut sum, -factor, column);
     }
     sum
 }

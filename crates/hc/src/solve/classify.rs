@@ -14,7 +14,7 @@ use crate::start::PathSystem;
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
-use crate::tolerances;
+use crate::tolerances::{ends, equations};
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
@@ -22,12 +22,6 @@ use poly::{Exact, Polynomial};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
-
-/// Coefficients with more bits than this are no doubles, and no decimals of sixteen digits.
-const LONG: u64 = 60;
-/// The logarithm to base 2 of about how large the product of the ratios of coefficients of each equation may be, so that
-/// solutions are surely no larger than where paths to infinity are followed, which is 1e60.
-const FAR: f64 = 100.0;
 
 /// The given equations as polynomials, by which ends are judged.
 pub(super) struct Expanded<'a> {
@@ -68,7 +62,7 @@ impl<'a> Expanded<'a> {
     pub(super) fn may_have_far_solutions(&self) -> bool {
         let bits = |q: &BigRational| q.numer().bits().max(q.denom().bits());
         let mut coefficients = self.polynomials.iter().flat_map(|p| p.terms()).map(|(_, c)| c);
-        if coefficients.any(|c| bits(&c.re).max(bits(&c.im)) > LONG) {
+        if coefficients.any(|c| bits(&c.re).max(bits(&c.im)) > equations::LONG) {
             return true;
         }
         let span = |p: &Polynomial<Exact>| {
@@ -76,7 +70,7 @@ impl<'a> Expanded<'a> {
             let (low, high) = sizes.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.min(a), s.max(b)));
             (high - low).max(0.0)
         };
-        self.polynomials.iter().map(span).sum::<f64>() > FAR
+        self.polynomials.iter().map(span).sum::<f64>() > equations::FAR_RATIOS
     }
 
     /// Where paths end that do not end at solutions, if there are no components: at infinity, or at points that solve only
@@ -93,8 +87,9 @@ impl<'a> Expanded<'a> {
     /// How many solutions there are of each multiplicity, with zero coordinates too, if these are finitely many and
     /// `work` products modulo a prime tell.
     fn census(&self, work: u64, monitor: &Monitor) -> Option<&Census> {
-        let negative = |p: &Polynomial<Exact>| p.terms().iter().any(|(m, _)| m.exponents().iter().any(|&e| e < 0));
-        let count = || if self.polynomials.iter().any(negative) { None } else { census(&self.given, work, monitor) };
+        let count = || {
+            if self.polynomials.iter().any(Polynomial::is_laurent) { None } else { census(&self.given, work, monitor) }
+        };
         self.census.get_or_init(count).as_ref()
     }
 }
@@ -160,7 +155,7 @@ impl Ends {
                 Consistency::Solves => solutions.push((path, Solution::new(point, 1, 1, false, residual, condition))),
                 Consistency::Unclear => {
                     self.set(path, End::SINGULAR);
-                    unclear.push((path, SingularEnd { point, winding: 1, error: tolerances::ends::ROUNDED }));
+                    unclear.push((path, SingularEnd { point, winding: 1, error: ends::ROUNDED }));
                 }
             }
         }

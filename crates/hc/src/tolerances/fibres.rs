@@ -51,6 +51,8 @@ pub(crate) mod families {
     /// A sum of points moves straight if it deviates from a straight line by less than this share of
     /// their sizes: the rest is rounding error of double-double.
     pub(crate) const STRAIGHT: f64 = 1e-26;
+    /// Parts of a fibre whose sum deviates by less than this, in doubles, are looked at in double-double.
+    pub(crate) const NEARLY_STRAIGHT: f64 = 1e-12;
     /// Deviations of a trace test below this pass. Those of whole fibres are rounding errors of
     /// double-double, some 1e-30; a missing point of another size than the others deviates by little
     /// more than this.

@@ -209,11 +209,12 @@ pub(crate) mod endgame {
     pub(crate) const STRAIGHT_AFTER: u32 = 2;
     /// Share of a leg to zero that may be left before it is given up.
     pub(crate) const LEFT_OF_LEG: f64 = 1e-7;
-    /// Paths to infinity are followed until coordinates have about this size: products of five are numbers still.
-    pub(crate) const FAR: f64 = 1e60;
     /// Leading terms of an equation cancel on a path to infinity if this share of them is left at most.
     pub(crate) const CANCELS: f64 = 0.1;
-    /// Up to there the logarithms of their sizes grow as the first clear loop says, up to this share.
+    /// Where they do not, paths are followed until coordinates have about this size: products of five are numbers still.
+    pub(crate) const FAR: f64 = 1e60;
+    /// A path goes on to infinity if the logarithms of its coordinates grow up to there as the first clear loop says,
+    /// but for this share.
     pub(crate) const GROWN: f64 = 0.05;
     /// Circles of a smaller radius than this are not looked at.
     pub(crate) const LEAST_RADIUS: f64 = 1e-290;

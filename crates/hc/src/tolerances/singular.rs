@@ -22,6 +22,11 @@ pub(crate) mod equations {
     pub(crate) const KEPT_FACTORS: u32 = 3;
     /// Most unknowns for sums: mixed cells and linear algebra take longer with each.
     pub(crate) const NAMED_SUMS: usize = 128;
+    /// Coefficients with more bits than this are no doubles, and no decimals of sixteen digits.
+    pub(crate) const LONG: u64 = 60;
+    /// The logarithm to base 2 of about how large the product of the ratios of coefficients of each equation may be, so
+    /// that solutions are no larger than where paths to infinity are followed (`endgame::FAR`).
+    pub(crate) const FAR_RATIOS: f64 = 100.0;
     /// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are
     /// not scaled.
     pub(crate) const MILD: f64 = 14.0;

